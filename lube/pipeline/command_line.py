@@ -12,7 +12,6 @@ from typing import Any
 from lube.errors import StudyError, located, shown
 from lube.pipeline.sources import from_here
 from lube.pipeline.study_files import one_line_errors
-from lube.study.lubricant_record import check_fluid
 from lube.study.resolve import study_files
 from lube.study.study import Study, load_study
 from lube.types import File
@@ -193,7 +192,7 @@ def _checked(path, changes):
     study = load_study(path, changes)
     with located(f"{path}: lubricants"):
         for record in study.lubricants:
-            check_fluid(record, study.operating_grid.temperature)
+            record.check_fluid(study.operating_grid.temperature)
     return study, {"path": path, "changes": changes}
 
 

@@ -293,6 +293,57 @@ class LubricantRecord(StrictModel):
         pairs = [(p.pressure - ATMOSPHERIC_PRESSURE, p.dynamic_viscosity / ambient) for p in points]
         return sorted(pairs)
 
+    def check_temperatures(self, temperatures: Sequence[float]) -> None:
+        """Refuse temperatures at which a lubricant record is not valid.
+
+        CoolProp, which takes seconds to import, is asked for the range of a fluid if the record has
+        none.
+
+        Parameters
+        ----------
+        temperatures : sequence of float
+            Temperatures, degC.
+
+        Raises
+        ------
+        RangeError
+            At the first temperature outside, with the lubricant's name and its range.
+        """
+        lowest, highest = self.valid_temperatures
+        needed = f"need {lowest:g} to {highest:g} degC"
+        if self.viscosity.coolprop_fluid is None:  # its liquid has no properties beyond
+            needed += ", or a wider temperature_range of the oil"
+        for temperature in temperatures:
+            if not lowest - ROUNDING <= temperature <= highest + ROUNDING:
+                raise RangeError(f"{self.name}: got {temperature:g} degC, {needed}")
+
+    def check_fluid(self, temperatures: Sequence[float]) -> None:
+        """Refuse a CoolProp fluid without viscosity or density at the temperatures of a study.
+
+        The shipped fluids are known to be fit and are not checked: CoolProp takes seconds to
+        import.
+
+        Parameters
+        ----------
+        temperatures : sequence of float
+            Temperatures, degC.
+
+        Raises
+        ------
+        LubeError
+            If CoolProp lacks a property of the fluid, or a temperature or the secant's pressure
+            lies outside its range.
+        """
+        fluid = self.viscosity.coolprop_fluid
+        if fluid is None or (self.files and self.files[0].parent == SHIPPED_FOLDER):
+            return
+        kelvin = np.array(temperatures, dtype=float) + ZERO_CELSIUS
+        with located(self.name):
+            for name in ("viscosity", "density"):
+                liquid_property(fluid, name, kelvin)
+            if self.pressure_viscosity.pressure is not None:
+                liquid_property(fluid, "viscosity", kelvin, self.pressure_viscosity.pressure)
+
 
 def _shipped():
     """Shipped records: YAML file of each name, and the ISO grade in the name, if any, to insert."""
@@ -411,59 +462,3 @@ def _beside(record_path, name):
             f"{record_path}: viscosity.csv: got {shown(name)}, need a file in the record's folder"
         )
     return folder / name
-
-
-def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -> None:
-    """Refuse temperatures at which a lubricant record is not valid.
-
-    CoolProp, which takes seconds to import, is asked for the range of a fluid if the record has
-    none.
-
-    Parameters
-    ----------
-    record : LubricantRecord
-        The lubricant.
-    temperatures : sequence of float
-        Temperatures, degC.
-
-    Raises
-    ------
-    RangeError
-        At the first temperature outside, with the lubricant's name and its range.
-    """
-    lowest, highest = record.valid_temperatures
-    needed = f"need {lowest:g} to {highest:g} degC"
-    if record.viscosity.coolprop_fluid is None:  # its liquid has no properties beyond
-        needed += ", or a wider temperature_range of the oil"
-    for temperature in temperatures:
-        if not lowest - ROUNDING <= temperature <= highest + ROUNDING:
-            raise RangeError(f"{record.name}: got {temperature:g} degC, {needed}")
-
-
-def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:
-    """Refuse a CoolProp fluid without viscosity or density at the temperatures of a study.
-
-    The shipped fluids are known to be fit and are not checked: CoolProp takes seconds to import.
-
-    Parameters
-    ----------
-    record : LubricantRecord
-        The lubricant.
-    temperatures : sequence of float
-        Temperatures, degC.
-
-    Raises
-    ------
-    LubeError
-        If CoolProp lacks a property of the fluid, or a temperature or the secant's pressure lies
-        outside its range.
-    """
-    fluid = record.viscosity.coolprop_fluid
-    if fluid is None or (record.files and record.files[0].parent == SHIPPED_FOLDER):
-        return
-    kelvin = np.array(temperatures, dtype=float) + ZERO_CELSIUS
-    with located(record.name):
-        for name in ("viscosity", "density"):
-            liquid_property(fluid, name, kelvin)
-        if record.pressure_viscosity.pressure is not None:
-            liquid_property(fluid, "viscosity", kelvin, record.pressure_viscosity.pressure)

@@ -22,7 +22,7 @@ from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
 from lube.study.line_spec import LineSpec, band_in_words, line_spec
-from lube.study.lubricant_record import LubricantRecord, check_temperatures, load_record
+from lube.study.lubricant_record import LubricantRecord, load_record
 from lube.study.metadata import About
 from lube.study.operating_grid import OperatingGrid, TracePoint
 from lube.study.resolve import resolved_content, with_paths
@@ -405,7 +405,7 @@ class Study(StrictModel):
         each_once(tuple(record.name for record in self.lubricants))
         with located("operating_grid.temperature", ValueError):
             for record in self.lubricants:
-                check_temperatures(record, self.operating_grid.temperature)
+                record.check_temperatures(self.operating_grid.temperature)
         with located(kind=ValueError):
             if self.inlet_shear_heating != "none":
                 self.check_conductivity(f"got {self.inlet_shear_heating}, need none, or")
