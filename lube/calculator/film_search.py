@@ -16,7 +16,6 @@ from lube.schema import LIMITS
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import contact_curve, peaked_curve
-from lube.study.line_spec import check_follows_rolling, check_width
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 
@@ -67,7 +66,7 @@ class FilmSearch:
         self._realisations = check_realisations(realisations, seed)
         self._rollers, self._seed = rollers, seed
         if not self._on_surface:
-            check_follows_rolling(rollers.lines)
+            rollers.lines.check_follows_rolling()
         self._sigma = rollers.pair.composite_rms_roughness
 
     def along(self, table, levels, tried):
@@ -114,7 +113,7 @@ class FilmSearch:
             Lambda ratio of the rollers, if their roughness changes and not the film. The layer's
             strength then changes in proportion, as `required_roughness` explains.
         """
-        check_width(self._rollers.lines, 2.0 * half_width, "force: the contact")
+        self._rollers.lines.check_width(2.0 * half_width, "force: the contact")
         look = self._at_surfaces if self._on_surface else self._at_lines
         table, limits = look(half_width, table_at, ends, own)
         ratios = table["film_thickness"].values / self._sigma

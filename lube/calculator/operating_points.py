@@ -34,7 +34,6 @@ from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
-from lube.study.line_spec import check_follows_rolling, check_width
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
@@ -350,8 +349,8 @@ def ensemble(
     spec = rollers.lines
     thickness, width = xr.broadcast(table["film_thickness"], 2.0 * table["contact_half_width"])
     for end in (width.min().item(), width.max().item()):
-        check_width(spec, end, "force: the contact")
-    check_follows_rolling(spec)
+        spec.check_width(end, "force: the contact")
+    spec.check_follows_rolling()
     windows = ContactWindows(spec, table, rollers.layer, gap)
 
     def of_realisation(number):
@@ -410,8 +409,8 @@ def trace(
     one = _one_point(rollers, oil, force, speed, temperature)
     table = film_table(*one, [one_name("film_formula", film_formula)])
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
-    check_width(rollers.lines, 2.0 * table["contact_half_width"].item(), "force: the contact")
-    check_follows_rolling(rollers.lines)
+    rollers.lines.check_width(2.0 * table["contact_half_width"].item(), "force: the contact")
+    rollers.lines.check_follows_rolling()
     lines = roughness_batch(rollers.lines, seed, [0])
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]

@@ -90,8 +90,9 @@ def _datasets(first, second, where):
     lines = [*_only_in_one(sorted(one.variables), sorted(other.variables))]
     labelled = [dim for dim in one.dims if dim in one.indexes and dim in other.indexes]
     for dim in labelled:
-        one, other, lost = _at_common_labels(one, other, dim)
-        lines += lost
+        lines += _labels_only_in_one(one.indexes[dim], other.indexes[dim], dim)
+    unlabelled = {*one.dims, *other.dims}.difference(labelled)
+    one, other = xr.align(one, other, join="inner", exclude=unlabelled)
     shared = sorted(set(one.variables) & set(other.variables) - set(labelled))
     differing = {name: line for name in shared if (line := _variables(one, other, name))}
     for name in differing:
@@ -112,16 +113,12 @@ def _read(path):
         raise DataError(f"{path}: not a complete NetCDF file ({reason})") from None
 
 
-def _at_common_labels(one, other, dim):
-    """Select the labels of a dimension that both datasets have, and name the others."""
-    here, there = one.indexes[dim], other.indexes[dim]
-    lost = []
+def _labels_only_in_one(here, there, dim):
+    """Name the labels of a dimension that only one of both datasets has."""
     for number, own, others in (("first", here, there), ("second", there, here)):
         if alone := [_short(label) for label in own if label not in others]:
             names = "; ".join([*alone[:_MOST_NAMED], *["..."] * (len(alone) > _MOST_NAMED)])
-            lost.append(f"{dim}: {len(alone)} of {own.size} only in the {number}: {names}")
-    common = [label for label in here if label in there]
-    return one.sel({dim: common}), other.sel({dim: common}), lost
+            yield f"{dim}: {len(alone)} of {own.size} only in the {number}: {names}"
 
 
 def _short(value):
@@ -146,9 +143,9 @@ def _variables(one, other, name):
         gap[differ] = np.abs(there.values[differ].astype(float) - here.values[differ])
     # A value that only one dataset has counts as the largest difference.
     place = np.unravel_index(np.argmax(np.where(np.isnan(gap), np.inf, gap)), gap.shape)
+    at = dict(zip(here.dims, place, strict=True))
     line = f"{np.count_nonzero(differ)} of {gap.size} differ, {'most' if numbers else 'first'}"
-    line += f"{_coordinates(here, place)}: {_value(one, name, place)} against "
-    line += _value(other, name, place, here.dims)
+    line += f"{_coordinates(here, at)}: {_value(one, name, at)} against {_value(other, name, at)}"
     if numbers and np.isfinite(gap[place]):
         largest = max(np.abs([here.values[place], there.values[place]]))
         line += f", {100.0 * gap[place] / largest:.2g} %"
@@ -159,19 +156,18 @@ def _sizes(variable):
     return " x ".join(f"{size} {dim}" for dim, size in variable.sizes.items()) or "a single value"
 
 
-def _coordinates(variable, place):
+def _coordinates(variable, at):
     """Say where a value is."""
     labels = [
         f"{dim} {_short(variable[dim].values[index]) if dim in variable.coords else index}"
-        for dim, index in zip(variable.dims, place, strict=True)
+        for dim, index in at.items()
         if variable.sizes[dim] > 1
     ]
     return f" at {', '.join(labels)}" if labels else ""
 
 
-def _value(dataset, name, place, dims=None):
+def _value(dataset, name, at):
     """Format a value, with its interval if it has one."""
-    at = dict(zip(dims or dataset[name].dims, place, strict=True))
     value, *interval = (one.isel(at).item() for one in (dataset[name], *_limits(dataset, name)))
     between = f" ({_short(interval[0])} to {_short(interval[1])})" if interval else ""
     return f"{_short(value) if not isinstance(value, str) else shown(value)}{between}"

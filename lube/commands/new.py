@@ -4,10 +4,11 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 from lube.commands.run import repository
-from lube.errors import DataError, LubeError, shown
+from lube.errors import DataError, LubeError, located, shown
 from lube.pipeline.command_line import PAPER
 from lube.report.pages import render
 from lube.storage.files import why_not
@@ -99,11 +100,9 @@ def _numbers(option, text):
     values, units = match[1].replace(",", " ").split(), match[2]
     if option in OF_ROLLERS and len(values) > 2:
         raise LubeError(f"--{option}: got {shown(text)}, need one number, or one for each roller")
-    for value in values:
-        try:
+    with located(f"--{option}"):
+        for value in values:
             parse_quantity(f"{value} {units}", (OF_ROLLERS | OF_GRID)[option])
-        except LubeError as error:
-            raise LubeError(f"--{option}: {error}") from None
     return values, units
 
 
@@ -124,20 +123,17 @@ def _values(numbers):
 
 
 def _written(path, text, records):
-    """Write the files and check the study."""
-    written = []
-    try:
-        _write(path, text)
-        written.append(path)
-        if records is not None and not records.exists():
-            _write(records, _RECORDS)
-            written.append(records)
+    """Write the files and check the study; if it is refused, no new file is left."""
+    texts = {path: text}
+    if records is not None and not records.exists():
+        texts.setdefault(records, _RECORDS)
+    with ExitStack() as written:
+        for file, content in texts.items():
+            _write(file, content)
+            written.callback(file.unlink)
         load_study(path)
-    except LubeError:
-        for file in written:
-            file.unlink()
-        raise
-    return written
+        written.pop_all()
+    return [*texts]
 
 
 def _write(path, text):

@@ -9,10 +9,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from lube.errors import LubeError, StudyError, shown
+from lube.errors import StudyError, located, shown
 from lube.pipeline.sources import from_here
 from lube.pipeline.study_files import one_line_errors
-from lube.study.lubricant_record import check_fluid
 from lube.study.resolve import study_files
 from lube.study.study import Study, load_study
 from lube.types import File
@@ -191,11 +190,9 @@ def _checked(path, changes):
     """Load a study; also make the slow checks, which the start of each job leaves out."""
     path = os.path.relpath(path)
     study = load_study(path, changes)
-    for record in study.lubricants:
-        try:
-            check_fluid(record, study.operating_grid.temperature)
-        except LubeError as error:
-            raise type(error)(f"{path}: lubricants: {error}") from None
+    with located(f"{path}: lubricants"):
+        for record in study.lubricants:
+            record.check_fluid(study.operating_grid.temperature)
     return study, {"path": path, "changes": changes}
 
 

@@ -7,7 +7,6 @@ import numpy as np
 from lube.errors import DataError, located
 from lube.recordings.manifest import OF_FILES, Entry
 from lube.recordings.reader import Recording, open_recording
-from lube.study.lubricant_record import check_temperatures
 from lube.study.study import Study
 
 SATURATED = 0.001
@@ -44,7 +43,7 @@ def lubricant_of(entry: Entry, study: Study) -> str:
             f"{', '.join(lubricants)}"
         )
     with located(entry.where, DataError):
-        check_temperatures(lubricants[name], [entry.temperature])
+        lubricants[name].check_temperatures([entry.temperature])
         study.check_window(entry.force)
         study.check_slip(entry.slide_to_roll_ratio or 0.0)
     return name

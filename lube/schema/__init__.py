@@ -9,7 +9,7 @@ not fit its kind, before it is saved and when it is read.
 """
 
 from lube.schema.labels import check, label
-from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, Stage, forerunners
+from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
 from lube.schema.tables import (
     AT_RECORDS,
     ATTRIBUTES,
@@ -17,15 +17,12 @@ from lube.schema.tables import (
     COORDINATES,
     EXPERIMENT_DIMS,
     FILES,
-    LAYER_DIMS,
     LIMITS,
-    MASTER_DIMS,
     MEAN_LIMITS,
     OPERATING_DIMS,
     POINT_DIMS,
     REGIMES,
     SUMMARIES,
-    Variable,
     model_dependent,
     values_with_limits,
     with_dims,

@@ -44,7 +44,7 @@ class Stage:
     priority : int
         Jobs of a higher priority are started first.
     parallel : bool
-        Whether a job uses all cores.
+        Whether a job uses all cores; one of ``benchmark`` always does.
     in_batches : str
         Whether it joins batches, and of what: ``realisations`` or ``samples``.
     """
@@ -103,11 +103,8 @@ _ROWS = (
         "Hertz contact and film thickness over forces, speeds and temperatures",
         inputs=("lubricant",),
         values={
-            "rollers": {
-                "length": "rollers.length",
-                "first": _cylinder("first"),
-                "second": _cylinder("second"),
-            },
+            "rollers": {"length": "rollers.length"}
+            | {name: _cylinder(name) for name in ("first", "second")},
             **_named(
                 "rollers.reduced_radius rollers.reduced_modulus "
                 "rough_rollers.composite_rms_roughness film_formulas film_shape "
@@ -382,21 +379,18 @@ _ROWS = (
         same_values=("contact", "master", "experiment"),
         target="benchmark",
         only_with=(*_LINE, "conducts"),
-        parallel=True,
     ),
     Stage(
         "speed",
         "the study's kernels against plain versions of the same work, a few minutes",
         same_values=("contact",),
         target="benchmark",
-        parallel=True,
         only_with=_LINE,
     ),
     Stage(
         "reading",
         "time to read records, against other readers of the same files, a few minutes",
         target="benchmark",
-        parallel=True,
     ),
 )
 

@@ -131,12 +131,6 @@ OPERATING_DIMS = FILES["film"]["film_thickness"].dims
 CONTACT_DIMS = FILES["contact"]["breakthrough_probability_mean"].dims
 """Dimensions of the contact model's results."""
 
-MASTER_DIMS = FILES["master"]["breakthrough_probability_mean"].dims
-"""Dimensions of the master map."""
-
-LAYER_DIMS = FILES["master"]["layer_breakthrough_probability"].dims[1:]
-"""Dimensions of the master map for weaker and stronger boundary layers, without `realisation`."""
-
 POINT_DIMS = FILES["film"]["moes_load"].dims
 """Dimensions of a variable over the operating grid that does not depend on the film formula."""
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from lube.contact.counted import contact_at
 from lube.contact.ensemble import gather_map
-from lube.schema import LAYER_DIMS, MASTER_DIMS, label
+from lube.schema import label
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.types import Datasets
@@ -60,7 +60,7 @@ def contact_map(
     """
     ratios, widths = _levels(film, lambda_levels, width_levels)
     ratios = np.concatenate([ratios[0] * THINNER_FILMS, ratios])
-    mapped = _map(lines, film, boundary_layer, (ratios, widths), MASTER_DIMS)
+    mapped = _map(lines, film, boundary_layer, (ratios, widths), ("lambda_ratio", "contact_width"))
     mapped["layer_breakthrough_probability"] = _layer_map(lines, film, boundary_layer)
     return label(mapped.assign_coords(revolutions=1), "master_batch")
 
@@ -91,8 +91,8 @@ def _layer_map(lines, film, boundary_layer):
         # The model depends on tau0 / h_c only, so changing the shear strength is enough.
         strength = factor * boundary_layer.shear_strength
         layer = boundary_layer.model_copy(update={"shear_strength": strength})
-        mapped = _map(lines, film, layer, levels, LAYER_DIMS[1:])
+        mapped = _map(lines, film, layer, levels, ("layer_lambda_ratio", "layer_contact_width"))
         maps.append(mapped["breakthrough_probability"])
     study = boundary_layer.shear_strength / boundary_layer.critical_thickness
     strengths = xr.DataArray(LAYER_FACTORS * study, dims="layer_strength", name="layer_strength")
-    return xr.concat(maps, strengths, join="exact").transpose("realisation", *LAYER_DIMS)
+    return xr.concat(maps, strengths, join="exact").transpose("realisation", ...)

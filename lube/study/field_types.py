@@ -34,22 +34,21 @@ class StrictModel(BaseModel, extra="forbid", frozen=True):
                 found["properties"][field.alias or name]["description"] = texts[name]
         return schema
 
+    def given_keys(self, keys: Iterable[str]) -> list[str]:
+        """Return the keys, among some of the model, that have a value."""
+        return [key for key in keys if getattr(self, key) is not None]
+
 
 def _texts(model):
     """Text under each field in the source of a model and of those that it is based on."""
     found = {}
     for base in reversed(model.__mro__):
-        if issubclass(base, StrictModel):
+        if issubclass(base, StrictModel) and not base.__pydantic_generic_metadata__["origin"]:
             (source,) = ast.parse(textwrap.dedent(inspect.getsource(base))).body
             for field, text in pairwise(source.body):
                 if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):
                     found[field.target.id] = inspect.cleandoc(text.value.value)
     return found
-
-
-def given_keys(model: BaseModel, keys: Iterable[str]) -> list[str]:
-    """Return the keys, among some of a model, that have a value."""
-    return [key for key in keys if getattr(model, key) is not None]
 
 
 _LIMITS = {
@@ -283,7 +282,6 @@ Slug = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
 
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 Length = Annotated[float, quantity("m", above=0.0)]
-Pressure = Annotated[float, quantity("Pa", above=0.0)]
 
 
 Model = TypeVar("Model", bound=StrictModel)

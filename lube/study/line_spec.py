@@ -178,10 +178,48 @@ class LineSpec(StrictModel):
     def independent_windows(self, width: Values, slower: float = 1.0) -> Values:
         """Count the windows of a contact width, m, in a turn of the smaller roller.
 
-        As in `lube.statistics.sample_size.independent_windows`; with slip, for the speed of the
-        slower surface over that of the faster one.
+        As in `lube.statistics.sample_size.independent_windows`. A slower surface, whose speed is
+        this fraction of the faster one's, shows less of its line.
         """
         return independent_windows(self.travel * slower, width, self.longest_wavelength)
+
+    def check_width(self, width: float, what: str) -> None:
+        """Refuse a contact that is finer than the grid or wider than a roller's perimeter.
+
+        Parameters
+        ----------
+        width : float
+            Width of the contact, m.
+        what : str
+            Name of the contact, for the message.
+
+        Raises
+        ------
+        StudyError
+            With the contact width, and what is needed.
+        """
+        least, most = 2.0 * self.spacing, self.travel
+        if not least <= width < most:
+            raise StudyError(
+                f"{what} is {width:.3g} m wide, need at least two grid spacings, {least:.3g} m, "
+                f"and less than a roller's perimeter, {most:.3g} m"
+            )
+
+    def check_follows_rolling(self) -> None:
+        """Refuse surfaces for which lines cannot stand, as their waves run across rolling.
+
+        Raises
+        ------
+        StudyError
+            With the lay, and what is needed.
+        """
+        for line in self.lines:
+            if not line.follows_rolling:
+                raise StudyError(
+                    f"lay_angle: got ridges {line.lay_ratio:g} times longer than wide at "
+                    f"{line.lay_angle:g} deg to rolling, need a contact_model of surface alone: a "
+                    "line cannot stand for a surface whose waves mostly run across rolling"
+                )
 
 
 def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -> LineSpec:
@@ -286,53 +324,6 @@ def _rough_line(rollers, roughness, name, rms, lengths):
         kurtosis=own.kurtosis,
         **shape,
     )
-
-
-def check_width(spec: LineSpec, width: float, what: str) -> None:
-    """Refuse a contact that is finer than the grid or wider than a roller's perimeter.
-
-    Parameters
-    ----------
-    spec : LineSpec
-        The roughness lines.
-    width : float
-        Width of the contact, m.
-    what : str
-        Name of the contact, for the message.
-
-    Raises
-    ------
-    StudyError
-        With the contact width, and what is needed.
-    """
-    least, most = 2.0 * spec.spacing, spec.travel
-    if not least <= width < most:
-        raise StudyError(
-            f"{what} is {width:.3g} m wide, need at least two grid spacings, {least:.3g} m, and "
-            f"less than a roller's perimeter, {most:.3g} m"
-        )
-
-
-def check_follows_rolling(spec: LineSpec) -> None:
-    """Refuse surfaces for which lines cannot stand, as their waves run across rolling.
-
-    Parameters
-    ----------
-    spec : LineSpec
-        The roughness lines.
-
-    Raises
-    ------
-    StudyError
-        With the lay, and what is needed.
-    """
-    for line in spec.lines:
-        if not line.follows_rolling:
-            raise StudyError(
-                f"lay_angle: got ridges {line.lay_ratio:g} times longer than wide at "
-                f"{line.lay_angle:g} deg to rolling, need a contact_model of surface alone: a line "
-                "cannot stand for a surface whose waves mostly run across rolling"
-            )
 
 
 def _key(roller, own, name):

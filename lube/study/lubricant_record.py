@@ -16,14 +16,14 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
-from lube.errors import RangeError, RecordError, located, right_one, shown
+from lube.errors import RangeError, RecordError, located, nearest, shown
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_property, liquid_range
 from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOLD_BASES
 from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
-from lube.study.field_types import Slug, StrictModel, Text, given_keys, quantity, validate
+from lube.study.field_types import Slug, StrictModel, Text, quantity, validate
 from lube.study.text_files import read_yaml
 from lube.study.viscosity_checks import ROUNDING, check_points
 from lube.study.viscosity_points import OilTemperature, ViscosityPoint, read_viscosity_csv
@@ -64,7 +64,7 @@ class Viscosity(Sourced):
     @model_validator(mode="after")
     def _check_one_way(self):
         ways = ("points", "csv", "iso_vg", "coolprop_fluid")
-        given = given_keys(self, ways)
+        given = self.given_keys(ways)
         if len(given) != 1:
             raise ValueError(f"got {' and '.join(given) or 'none'}, need one of {', '.join(ways)}")
         if (self.iso_vg is None) != (self.viscosity_index is None):
@@ -139,7 +139,7 @@ class PressureViscosity(Sourced):
     @property
     def given(self) -> list[str]:
         """Keys that give the coefficient; none if it follows from viscosities under pressure."""
-        return given_keys(self, ("gold_base", "value", "points"))
+        return self.given_keys(("gold_base", "value", "points"))
 
     @property
     def span(self) -> float | None:
@@ -207,7 +207,7 @@ class LubricantRecord(StrictModel):
                 raise ValueError("density: missing, need it unless CoolProp gives it")
             return self
         given = [f"pressure_viscosity.{key}" for key in alpha.given]
-        for key in given + given_keys(self, ("density", "thermal_conductivity", "viscosity_law")):
+        for key in given + self.given_keys(("density", "thermal_conductivity", "viscosity_law")):
             raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
         if alpha.definition == "reciprocal-asymptotic":
             raise ValueError(
@@ -293,6 +293,57 @@ class LubricantRecord(StrictModel):
         pairs = [(p.pressure - ATMOSPHERIC_PRESSURE, p.dynamic_viscosity / ambient) for p in points]
         return sorted(pairs)
 
+    def check_temperatures(self, temperatures: Sequence[float]) -> None:
+        """Refuse temperatures at which a lubricant record is not valid.
+
+        CoolProp, which takes seconds to import, is asked for the range of a fluid if the record has
+        none.
+
+        Parameters
+        ----------
+        temperatures : sequence of float
+            Temperatures, degC.
+
+        Raises
+        ------
+        RangeError
+            At the first temperature outside, with the lubricant's name and its range.
+        """
+        lowest, highest = self.valid_temperatures
+        needed = f"need {lowest:g} to {highest:g} degC"
+        if self.viscosity.coolprop_fluid is None:  # its liquid has no properties beyond
+            needed += ", or a wider temperature_range of the oil"
+        for temperature in temperatures:
+            if not lowest - ROUNDING <= temperature <= highest + ROUNDING:
+                raise RangeError(f"{self.name}: got {temperature:g} degC, {needed}")
+
+    def check_fluid(self, temperatures: Sequence[float]) -> None:
+        """Refuse a CoolProp fluid without viscosity or density at the temperatures of a study.
+
+        The shipped fluids are known to be fit and are not checked: CoolProp takes seconds to
+        import.
+
+        Parameters
+        ----------
+        temperatures : sequence of float
+            Temperatures, degC.
+
+        Raises
+        ------
+        LubeError
+            If CoolProp lacks a property of the fluid, or a temperature or the secant's pressure
+            lies outside its range.
+        """
+        fluid = self.viscosity.coolprop_fluid
+        if fluid is None or (self.files and self.files[0].parent == SHIPPED_FOLDER):
+            return
+        kelvin = np.array(temperatures, dtype=float) + ZERO_CELSIUS
+        with located(self.name):
+            for name in ("viscosity", "density"):
+                liquid_property(fluid, name, kelvin)
+            if self.pressure_viscosity.pressure is not None:
+                liquid_property(fluid, "viscosity", kelvin, self.pressure_viscosity.pressure)
+
 
 def _shipped():
     """Shipped records: YAML file of each name, and the ISO grade in the name, if any, to insert."""
@@ -327,15 +378,13 @@ def is_record_path(name: object) -> bool:
     return isinstance(name, str | Path) and Path(name).suffix in (".yaml", ".yml")
 
 
-def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
+def load_record(name_or_path: File) -> LubricantRecord:
     """Read and check a lubricant record.
 
     Parameters
     ----------
     name_or_path : str or Path
         Name of a shipped record, or path of a ``.yaml`` file.
-    folder : str or Path, optional
-        Folder that a relative path starts from; by default the current one.
 
     Returns
     -------
@@ -352,7 +401,7 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
     >>> load_record("n-dodecane").viscosity.coolprop_fluid
     'n-Dodecane'
     """
-    path, grade = _record_path(name_or_path, folder)
+    path, grade = _record_path(name_or_path)
     content = read_yaml(path, RecordError)
     if grade is not None:
         content = _regraded(content, name_or_path, grade)
@@ -388,20 +437,19 @@ def _regraded(content, name, grade):
     return content | {"name": name, "title": title, "viscosity": viscosity | {"iso_vg": grade}}
 
 
-def _record_path(name_or_path, folder):
+def _record_path(name_or_path):
     """Path of a record's file, and the ISO grade to insert, if any."""
     if is_record_path(name_or_path):
-        return Path(folder) / name_or_path, None
+        return Path(name_or_path), None
     shipped, is_name = _shipped(), isinstance(name_or_path, str)
     if is_name and name_or_path in shipped:
         return shipped[name_or_path]
-    near = right_one(name_or_path, shipped) if is_name else ""
+    near = nearest(name_or_path, shipped) if is_name else None
     lowest, *_, highest = GEAR_OIL_GRADES
-    grades = f"-iso-vg-<{lowest} to {highest}>"
-    names = {re.sub(r"-iso-vg-\d+", grades, name): None for name in sorted(shipped)}
+    names = {_GRADED.sub(rf"\1<{lowest} to {highest}>", name): None for name in sorted(shipped)}
     raise RecordError(
         f"got {shown(name_or_path)}, need one of {', '.join(names)}, or a path of a .yaml file"
-        f"{f'; {near}' if near.startswith('did') else ''}"
+        f"{f'; did you mean {near!r}?' if near else ''}"
     )
 
 
@@ -414,59 +462,3 @@ def _beside(record_path, name):
             f"{record_path}: viscosity.csv: got {shown(name)}, need a file in the record's folder"
         )
     return folder / name
-
-
-def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -> None:
-    """Refuse temperatures at which a lubricant record is not valid.
-
-    CoolProp, which takes seconds to import, is asked for the range of a fluid if the record has
-    none.
-
-    Parameters
-    ----------
-    record : LubricantRecord
-        The lubricant.
-    temperatures : sequence of float
-        Temperatures, degC.
-
-    Raises
-    ------
-    RangeError
-        At the first temperature outside, with the lubricant's name and its range.
-    """
-    lowest, highest = record.valid_temperatures
-    needed = f"need {lowest:g} to {highest:g} degC"
-    if record.viscosity.coolprop_fluid is None:  # its liquid has no properties beyond
-        needed += ", or a wider temperature_range of the oil"
-    for temperature in temperatures:
-        if not lowest - ROUNDING <= temperature <= highest + ROUNDING:
-            raise RangeError(f"{record.name}: got {temperature:g} degC, {needed}")
-
-
-def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:
-    """Refuse a CoolProp fluid without viscosity or density at the temperatures of a study.
-
-    The shipped fluids are known to be fit and are not checked: CoolProp takes seconds to import.
-
-    Parameters
-    ----------
-    record : LubricantRecord
-        The lubricant.
-    temperatures : sequence of float
-        Temperatures, degC.
-
-    Raises
-    ------
-    LubeError
-        If CoolProp lacks a property of the fluid, or a temperature or the secant's pressure lies
-        outside its range.
-    """
-    fluid = record.viscosity.coolprop_fluid
-    if fluid is None or (record.files and record.files[0].parent == SHIPPED_FOLDER):
-        return
-    kelvin = np.array(temperatures, dtype=float) + ZERO_CELSIUS
-    with located(record.name):
-        for name in ("viscosity", "density"):
-            liquid_property(fluid, name, kelvin)
-        if record.pressure_viscosity.pressure is not None:
-            liquid_property(fluid, "viscosity", kelvin, record.pressure_viscosity.pressure)

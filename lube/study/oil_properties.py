@@ -29,7 +29,7 @@ from lube.physics.pressure_viscosity import (
 from lube.physics.viscosity_index import viscosity_index
 from lube.physics.viscosity_laws import PARAMETER_UNITS, VISCOSITY_LAWS
 from lube.schema import label
-from lube.study.lubricant_record import LubricantRecord, check_temperatures
+from lube.study.lubricant_record import LubricantRecord
 
 MM2_PER_S = 1e-6
 """One mm2/s in m2/s."""
@@ -50,9 +50,8 @@ class _MeasuredOil:
 
     def __init__(self, record):
         self._record, self.density = record, record.density_at
-        temperature, viscosity = (np.array(column) for column in zip(*record.data, strict=True))
+        temperature, self.data_viscosity = np.transpose(record.data)
         self.data_temperature = temperature + ZERO_CELSIUS
-        self.data_viscosity = viscosity
         self._law = VISCOSITY_LAWS[record.law_used]
         self._parameters = self._law.fit(self.data_temperature, self.data_viscosity / MM2_PER_S)
         # The law also holds a little outside the range of the data.
@@ -193,7 +192,7 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
 
 def _row(record, temperature, fit_temperature):
     """Variables of one lubricant."""
-    check_temperatures(record, temperature)
+    record.check_temperatures(temperature)
     with located(record.name):
         substance = (_CoolPropFluid if record.law_used == "coolprop" else _MeasuredOil)(record)
         properties = _properties(record, substance, temperature + ZERO_CELSIUS)
@@ -248,7 +247,7 @@ def _temperature_viscosity(substance, temperature):
 def _viscosity_index(record, substance):
     """Viscosity index; NaN for thin liquids and ranges without 40 and 100 degC."""
     try:
-        check_temperatures(record, (40.0, 100.0))
+        record.check_temperatures((40.0, 100.0))
         at_40_and_100 = np.array([40.0, 100.0]) + ZERO_CELSIUS
         return viscosity_index(*substance.kinematic_viscosity(at_40_and_100) / MM2_PER_S)
     except RangeError:

@@ -111,9 +111,8 @@ class Rig(StrictModel, validate_default=True):
 
     def like(self, preset: str) -> "Rig":
         """Return this rig with the settings of a known one."""
-        known = Rig.model_validate(PRESETS[preset].settings)
-        changed = {name: getattr(known, name) for name in PRESETS[preset].settings}
-        return self.model_copy(update=changed | {"preset": preset})
+        known = Rig(preset=preset).model_dump(include={"preset", *PRESETS[preset].settings})
+        return self.model_copy(update=known)
 
     @property
     def resolved_voltage(self) -> float:

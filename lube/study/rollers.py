@@ -11,15 +11,7 @@ import numpy as np
 from pydantic import Field, StrictInt, model_validator
 
 from lube.physics.hertz import contact_half_width, reduced_modulus, reduced_radius
-from lube.study.field_types import (
-    Length,
-    Pressure,
-    StrictModel,
-    bounded,
-    given_keys,
-    quantity,
-    quantity_or_words,
-)
+from lube.study.field_types import Length, StrictModel, bounded, quantity, quantity_or_words
 from lube.study.roller_topography import RollerTopography
 from lube.study.size_limits import MOST_POINTS
 from lube.units import parse_number
@@ -86,16 +78,16 @@ _ShortestWavelength = Annotated[
     float | str,
     quantity_or_words("m", "a number of grid points such as `10 points`", " points$"),
 ]
-_Hurst = Annotated[float, quantity(None, above=0.0, below=1.0)]
 _Skewness = Annotated[float, quantity(None, least=-3.0, most=3.0)]
 _Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
+_Stress = Annotated[float, quantity("Pa", above=0.0)]
 _LayRatio = Annotated[float, quantity(None, least=1.0, most=1e4)]
 
 
 class OwnRoughness(StrictModel):
     """Values of one roller that override those of the study's section `roughness`."""
 
-    hurst_exponent: _Hurst | None = None
+    hurst_exponent: Annotated[float, quantity(None, above=0.0, below=1.0)] | None = None
     """Hurst exponent H; a measured surface needs none"""
     longest_wavelength: _LongestWavelength | None = None
     """longest wavelength of the line, 2 pi / q_min"""
@@ -136,7 +128,7 @@ class Roller(StrictModel):
 
     radius: Length
     """radius of the cylinder"""
-    young_modulus: Pressure
+    young_modulus: _Stress
     """Young's modulus"""
     poisson_ratio: Annotated[float, quantity(None, least=0.0, most=0.5)]
     """Poisson's ratio"""
@@ -150,7 +142,7 @@ class Roller(StrictModel):
     @property
     def kinds(self) -> list[str]:
         """Keys of its roughness that are given: one, or none if only the composite is known."""
-        return given_keys(self, ROUGHNESS_KEYS)
+        return self.given_keys(ROUGHNESS_KEYS)
 
     @property
     def rms_height(self) -> float | None:
@@ -166,7 +158,7 @@ class Roller(StrictModel):
             one, other, *_ = self.kinds
             raise ValueError(f"{other}: got one together with {one}, need one of the two")
         if self.topography and self.roughness:
-            for name in given_keys(self.roughness, _OF_SPECTRUM):
+            for name in self.roughness.given_keys(_OF_SPECTRUM):
                 raise ValueError(
                     f"roughness.{name}: got {getattr(self.roughness, name):g} together with a "
                     "topography, whose spectrum replaces it, need one of the two"
@@ -294,5 +286,5 @@ class BoundaryLayer(StrictModel):
 
     critical_thickness: Length
     """critical thickness h_c"""
-    shear_strength: Pressure
+    shear_strength: _Stress
     """limiting shear stress tau0"""

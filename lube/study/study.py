@@ -21,14 +21,8 @@ from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
-from lube.study.line_spec import (
-    LineSpec,
-    band_in_words,
-    check_follows_rolling,
-    check_width,
-    line_spec,
-)
-from lube.study.lubricant_record import LubricantRecord, check_temperatures, load_record
+from lube.study.line_spec import LineSpec, band_in_words, line_spec
+from lube.study.lubricant_record import LubricantRecord, load_record
 from lube.study.metadata import About
 from lube.study.operating_grid import OperatingGrid, TracePoint
 from lube.study.resolve import resolved_content, with_paths
@@ -39,10 +33,6 @@ from lube.study.size_limits import check_sizes
 from lube.study.uncertainty import FilmFormula, Uncertainty
 from lube.types import File
 from lube.units import with_unit
-
-_Meniscus = Annotated[float | str, quantity_or_words("m", "none", "^none$")]
-_Resistivity = Annotated[float | str, quantity_or_words("ohm*m", INSULATOR, f"^{INSULATOR}$")]
-
 
 CONTACT_MODELS = "line", "surface"
 """What touches: two roughness lines, or the surfaces that they stand for."""
@@ -85,7 +75,7 @@ class Study(StrictModel):
     the formula of Zhu and Cheng (1988) or that of Wilson and Sheu (1983), which differ with slip,
     or by the equation behind the latter
     """
-    inlet_meniscus: _Meniscus = "none"
+    inlet_meniscus: Annotated[float | str, quantity_or_words("m", "none", "^none$")] = "none"
     """distance of the oil's meniscus before the line of centres, more than the half-width of the
     contact; without it the contact is fully flooded
     """
@@ -106,7 +96,7 @@ class Study(StrictModel):
     need [surface]
     """
     boundary_layer: BoundaryLayer
-    resistivity: _Resistivity
+    resistivity: Annotated[float | str, quantity_or_words("ohm*m", INSULATOR, f"^{INSULATOR}$")]
     """resistivity of the rollers' material (Eq. 1); insulator, if either does not conduct, so that
     there is neither a resistance nor a rig
     """
@@ -242,13 +232,9 @@ class Study(StrictModel):
         """
         needed = {"surface_trace"} if self.has_surfaces else set()
         needed = needed.union(*(self._files_before(name) for name in self.datasets))
+        made = needed.union(path.stem for path in Path(folder).glob("*.nc"))
         extra = [name for name, target in ON_REQUEST.items() if target != "benchmark"]
-        made = [
-            name
-            for name in extra
-            if self.has(name) and (name in needed or Path(folder, f"{name}.nc").is_file())
-        ]
-        return [*self.datasets, *made]
+        return [*self.datasets, *(name for name in extra if name in made and self.has(name))]
 
     def _files_before(self, stage):
         """Names of all stages whose files a stage is made from, directly or through others."""
@@ -313,7 +299,7 @@ class Study(StrictModel):
         """
         half_width = self.rollers.contact_half_width(force)
         what = f"operating_grid.force: the contact at {force:g} N"
-        check_width(self.line_spec, 2.0 * half_width, what)
+        self.line_spec.check_width(2.0 * half_width, what)
         meniscus = self.inlet_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:
             raise StudyError(
@@ -360,14 +346,33 @@ class Study(StrictModel):
                 "its formula is for pure rolling"
             )
 
+    def check_conductivity(self, needed: str) -> None:
+        """Refuse heating at the inlet of an oil whose thermal conductivity is not known.
+
+        Parameters
+        ----------
+        needed : str
+            What came and what is needed, before the conductivity, for the message.
+
+        Raises
+        ------
+        StudyError
+            With the name of the first such lubricant.
+        """
+        for record in self.lubricants:
+            if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
+                raise StudyError(
+                    f"inlet_shear_heating: {needed} the thermal_conductivity of the lubricant "
+                    f"{record.name}"
+                )
+
     @property
     def evaluation(self) -> dict:
         """Settings of the experiment; for the manifest only whether there is one.
 
         Measured files are identified by their contents, not by their paths.
         """
-        manifest = self.experiment.manifest
-        return self.experiment.model_dump() | {"manifest": manifest is not None}
+        return self.experiment.model_dump() | {"manifest": self.experiment.manifest is not None}
 
     def stage_inputs(self, stage: str) -> dict:
         """Return the values of the study that a stage depends on, as plain data.
@@ -405,17 +410,17 @@ class Study(StrictModel):
         each_once(tuple(record.name for record in self.lubricants))
         with located("operating_grid.temperature", ValueError):
             for record in self.lubricants:
-                check_temperatures(record, self.operating_grid.temperature)
-        if self.inlet_shear_heating != "none":
-            self._check_conductivity()
+                record.check_temperatures(self.operating_grid.temperature)
         with located(kind=ValueError):
+            if self.inlet_shear_heating != "none":
+                self.check_conductivity(f"got {self.inlet_shear_heating}, need none, or")
             for force in self.operating_grid.force:
                 self.check_window(force)
             check_sizes(self)
             for ratio in self.slips:
                 self.check_slip(ratio)
             if self.has_lines:
-                check_follows_rolling(self.line_spec)
+                self.line_spec.check_follows_rolling()
             if self.has_surfaces:
                 self.check_surfaces(self.line_spec)
             elif self.rough_surfaces is not None:
@@ -427,14 +432,6 @@ class Study(StrictModel):
 
         with located(f"load_sharing: got {self.load_sharing}, need none"):
             check_stands_for_surface(self.line_spec)
-
-    def _check_conductivity(self):
-        for record in self.lubricants:
-            if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
-                raise ValueError(
-                    f"inlet_shear_heating: got {self.inlet_shear_heating}, need none, or the "
-                    f"thermal_conductivity of the lubricant {record.name}"
-                )
 
     @model_validator(mode="after")
     def _check_traces(self):

@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_args
+from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar, get_args
 
 from pydantic import Field, model_validator
 
@@ -128,14 +128,12 @@ FilmFormula = Annotated[
 
 
 Name = TypeVar("Name")
-Some = Annotated[tuple[Name, ...], Field(min_length=2)]
-"""Two names or more."""
 
 
-class Choice(StrictModel):
+class Choice(StrictModel, Generic[Name]):
     """A choice of the model that may be made otherwise; all are equally likely."""
 
-    choices: Some[str]
+    choices: tuple[Name, ...] = Field(min_length=2)
     """the choices"""
     source: Text
     """why each of them may be right, or `assumed`"""
@@ -151,40 +149,28 @@ class Choice(StrictModel):
         return self
 
 
-class OfDefinition(Choice):
+class OfDefinition(Choice[Literal[tuple(DEFINITIONS)]]):
     """Definitions of the pressure-viscosity coefficient."""
 
-    choices: Some[Literal[tuple(DEFINITIONS)]]
 
-
-class OfFormula(Choice):
+class OfFormula(Choice[FilmFormula]):
     """Film formulas."""
 
-    choices: Some[FilmFormula]
 
-
-class OfShape(Choice):
+class OfShape(Choice[Literal["flat", "computed"]]):
     """Shapes of the film."""
 
-    choices: Some[Literal["flat", "computed"]]
 
-
-class OfHeating(Choice):
+class OfHeating(Choice[Literal[INLET_HEATING]]):
     """Models of the heating at the inlet."""
 
-    choices: Some[Literal[INLET_HEATING]]
 
-
-class OfDeformation(Choice):
+class OfDeformation(Choice[Literal["none", "computed"]]):
     """Deformations of the roughness."""
 
-    choices: Some[Literal["none", "computed"]]
 
-
-class OfContact(Choice):
+class OfContact(Choice[Literal["line", "surface"]]):
     """What touches."""
-
-    choices: Some[Literal["line", "surface"]]
 
 
 @dataclass(frozen=True)
@@ -358,12 +344,7 @@ def check_uncertainty(study) -> None:
                     "definition of its coefficient, need none"
                 )
     if uncertain.inlet_shear_heating:
-        for record in study.lubricants:
-            if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
-                raise StudyError(
-                    "inlet_shear_heating: got choices, need the thermal_conductivity of the "
-                    f"lubricant {record.name}"
-                )
+        study.check_conductivity("got choices, need")
     _check_bands(study)
 
 

@@ -59,10 +59,7 @@ def check_points(record: LubricantRecord, where: File) -> None:
 
 
 def _check_ambient(record):
-    states = sorted(
-        (state for point in record._ambient for state in _states(record, point)),
-        key=lambda state: state[:2],
-    )
+    states = sorted(state for point in record._ambient for state in _states(record, point))
     if len({temperature for temperature, *_ in states}) < 2:
         raise RecordError("viscosity: got fewer than two temperatures, need two or more")
     for (cold, thick, words), (hot, thin, others) in pairwise(states):

@@ -26,11 +26,7 @@ from written_recordings import write_csv, write_netcdf, write_tdms
 from lube.errors import LubeError
 from lube.recordings.manifest import read_manifest
 from lube.recordings.reader import open_recording
-from lube.study.lubricant_record import (
-    SHIPPED_FOLDER,
-    check_temperatures,
-    load_record,
-)
+from lube.study.lubricant_record import SHIPPED_FOLDER, load_record
 from lube.study.resolve import resolved_content, resolved_text
 from lube.study.study import load_study
 from lube.study.text_files import read_yaml
@@ -196,7 +192,7 @@ def record_is_valid(path):
         return False
     check_schema("lubricant", read_yaml(path, LubeError))
     with contextlib.suppress(LubeError):
-        check_temperatures(record, [20.0, 40.0])
+        record.check_temperatures([20.0, 40.0])
     assert record.pressure_viscosity.definition_text and record.law_used
     json.dumps(record.model_dump(mode="json"), allow_nan=False)
     return True

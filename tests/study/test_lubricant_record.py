@@ -9,12 +9,7 @@ from refusals import one_line
 
 from lube.errors import LubeError, RangeError, RecordError
 from lube.physics.viscosity_index import viscosity_index
-from lube.study.lubricant_record import (
-    check_fluid,
-    check_temperatures,
-    load_record,
-    shipped_records,
-)
+from lube.study.lubricant_record import load_record, shipped_records
 from lube.study.viscosity_points import read_viscosity_csv
 
 OIL = """\
@@ -135,7 +130,7 @@ def test_an_unknown_name_and_a_missing_file_are_refused(tmp_path):
     with pytest.raises(RecordError, match=r"got 'mobil-1', need one of base-oil.*mobilgear"):
         load_record("mobil-1")
     with pytest.raises(RecordError, match=r"none\.yaml: cannot be read: No such file"):
-        load_record("none.yaml", folder=tmp_path)
+        load_record(tmp_path / "none.yaml")
 
 
 SLOPE = "slope-at-atmospheric"
@@ -378,12 +373,12 @@ def test_temperatures_outside_the_range_are_refused_by_name_value_and_range(writ
     for temperature in (39.9, 100.1, float("nan")):
         needed = rf"my-oil: got {temperature:g} degC, need 40 to 100 degC"
         with pytest.raises(RangeError, match=needed):
-            check_temperatures(record, [50.0, temperature])
+            record.check_temperatures([50.0, temperature])
     wider = "title: x\ntemperature_range: {source: x, lowest: 293.15 K, highest: 250 degF}"
     record = load_record(write(OIL.replace("title: My oil", wider)))
-    check_temperatures(record, [20.0, 121.1])  # the ends, in spite of rounding
+    record.check_temperatures([20.0, 121.1])  # the ends, in spite of rounding
     with pytest.raises(RangeError, match=r"got 19\.9 degC, need 20 to 121\.111 degC"):
-        check_temperatures(record, [19.9])
+        record.check_temperatures([19.9])
 
 
 def test_a_coolprop_record_without_a_range_has_that_of_the_liquid(write):
@@ -391,7 +386,7 @@ def test_a_coolprop_record_without_a_range_has_that_of_the_liquid(write):
     # n-Decane melts at -29.7 degC and boils at 174.1 degC (CRC Handbook of Chemistry and Physics).
     assert record.valid_temperatures == pytest.approx((-29.7, 174.1), abs=0.3)
     with pytest.raises(RangeError, match="my-fluid: got 180 degC"):
-        check_temperatures(record, [180.0])
+        record.check_temperatures([180.0])
 
 
 def test_a_coolprop_fluid_that_cannot_serve_is_refused_without_computing_its_table(write):
@@ -402,17 +397,17 @@ def test_a_coolprop_fluid_that_cannot_serve_is_refused_without_computing_its_tab
         (secant.format(900), "n-Decane: got a pressure of 900 MPa, CoolProp's range is"),
     ]:
         record = load_record(write(text))
-        line = one_line(LubeError, check_fluid, record, [40.0])
+        line = one_line(LubeError, record.check_fluid, [40.0])
         assert line.startswith("my-fluid: ") and message in line
-    check_fluid(load_record(write(secant.format(100))), [40.0, 80.0])
-    check_fluid(load_record(write(OIL)), [40.0])
+    load_record(write(secant.format(100))).check_fluid([40.0, 80.0])
+    load_record(write(OIL)).check_fluid([40.0])
 
 
 def test_reading_and_checking_records_does_not_import_heavy_libraries():
     # Snakemake does this at every start.
     code = (
         "import sys; from lube.study.lubricant_record import *; "
-        "[check_temperatures(load_record(name), [60.0, 80.0]) for name in shipped_records()]; "
+        "[load_record(name).check_temperatures([60.0, 80.0]) for name in shipped_records()]; "
         "print([m for m in ('xarray', 'scipy.optimize', 'CoolProp', 'pandas') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

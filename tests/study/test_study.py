@@ -85,9 +85,9 @@ def test_the_papers_film_is_flat_and_not_corrected_and_another_asks_for_what_it_
     oil = study.lubricants[0].model_copy(update={"thermal_conductivity": None})
     values = dict(study) | {"lubricants": (oil,)}
     with pytest.raises(
-        ValueError, match=r"need none, or the thermal_conductivity of the lubricant"
+        StudyError, match=r"need none, or the thermal_conductivity of the lubricant"
     ):
-        study.model_copy(update=values)._check_conductivity()
+        study.model_copy(update=values).check_conductivity("need none, or")
 
 
 def test_the_lines_follow_from_the_largest_contact_width_and_the_radii(paper_with):
