@@ -1,7 +1,7 @@
-"""Trace a number of contact.nc to what determines it, and compute it again to the last bit.
+"""Trace a number of contact.nc or areal.nc to what determines it, and compute it again.
 
 The file states the values of the study that determine it. Together with the film table in the same
-folder they suffice to draw the roughness again and run the contact model on it.
+folder they suffice to draw the roughness again and find its contact, to the last bit.
 """
 
 from dataclasses import dataclass
@@ -12,11 +12,14 @@ import xarray as xr
 
 from lube.contact.ensemble import with_intervals
 from lube.contact.rough_pair import roughness_batch
+from lube.contact.surface_strip import SURFACES
 from lube.errors import DataError
+from lube.grid.film_responses import with_surface_responses
 from lube.grid.gap import Gap
 from lube.grid.levels import format_levels, level_index
 from lube.report.pages import render
 from lube.schema import CONTACT_DIMS
+from lube.stages.areal import contact_of_surfaces
 from lube.stages.contact import contact_statistics
 from lube.storage.netcdf import load
 from lube.storage.provenance import fingerprint, json_attribute
@@ -33,12 +36,14 @@ _CORRECTIONS = {
 
 @dataclass(frozen=True)
 class Explanation:
-    """An operating point of contact.nc, what determines it, and the same point computed again.
+    """An operating point of a file, what determines it, and the same point computed again.
 
     Attributes
     ----------
+    kind : str
+        Kind of the file: ``contact``, of lines, or ``areal``, of surfaces.
     contact : xarray.Dataset
-        The operating point as stored in the file, with the realisations computed again.
+        The operating point as stored in the file, of lines with the realisations computed again.
     lubricant : xarray.Dataset
         The properties of its lubricant at its temperature.
     film : xarray.Dataset
@@ -49,6 +54,7 @@ class Explanation:
         The same operating point, computed again.
     """
 
+    kind: str
     contact: xr.Dataset
     lubricant: xr.Dataset
     film: xr.Dataset
@@ -66,14 +72,16 @@ class Explanation:
 
 
 def explain(path: File, realisation: int | None = 0, **levels: float | str) -> Explanation:
-    """Trace an operating point of contact.nc and compute it again.
+    """Trace an operating point of contact.nc or areal.nc and compute it again.
 
     Parameters
     ----------
     path : str or Path
-        A contact.nc, in one folder with the film.nc and lubricant.nc that it was made from.
+        A contact.nc, or an areal.nc for contact of the surfaces, in one folder with the datasets
+        that it was made from.
     realisation : int or None, optional
         The realisation to compute again; None for all of them, with their mean and interval.
+        Surfaces are always all computed again.
     **levels
         The operating point, by the coordinates of the file, such as ``force=800``; a number
         within half a per cent of a level selects that level. A coordinate with one level may be
@@ -91,24 +99,39 @@ def explain(path: File, realisation: int | None = 0, **levels: float | str) -> E
         operating point or realisation.
     """
     path = Path(path)
-    contact = load(path, "contact")
+    kind = "areal" if path.stem == "areal" else "contact"
+    contact = load(path, kind)
     film = _input_of(contact, path, "film")
     lubricant = _input_of(film, path.with_name("film.nc"), "lubricant")
     stored = _operating_point(contact, path, levels)
+    point, properties = (_at(stored, table) for table in (film, lubricant))
+    values = json_attribute(contact, "config", path)
+    run = values["film"] | values[kind]
+    if any(line.get("heights") for line in run["lines"]["lines"]):
+        raise DataError(
+            f"{path}: got a line that is a measured profile, need lines drawn from a spectrum: "
+            "its heights are in roughness.nc alone"
+        )
+    if kind == "areal":
+        inputs = {"film": film.isel(film_formula=slice(contact.sizes["film_formula"]))}
+        if Gap(run["film_shape"], run["roughness_deformation"]).is_answered:
+            inputs["surface_response"] = _input_of(contact, path, "surface_response")
+        again = _surfaces_again(stored, with_surface_responses(inputs), run)
+        return Explanation(kind, stored, properties, point, values, again)
     if realisation is not None:
         if realisation not in stored["realisation"]:
             first, last = stored["realisation"].values[[0, -1]]
             raise DataError(f"{path}: realisation: got {realisation}, need {first} to {last}")
         stored = stored.sel(realisation=[realisation])
-    point, properties = (
-        table.sel({name: stored[name].values for name in CONTACT_DIMS if name in table.dims})
-        for table in (film, lubricant)
-    )
-    values = json_attribute(contact, "config", path)
-    again = _computed_again(stored, point, values["film"] | values["contact"])
+    again = _lines_again(stored, point, run)
     if realisation is None:
         again = with_intervals(again, point)
-    return Explanation(stored, properties, point, values, again)
+    return Explanation(kind, stored, properties, point, values, again)
+
+
+def _at(point, table):
+    """Rows of a table at an operating point; all dimensions are kept."""
+    return table.sel({name: point[name].values for name in CONTACT_DIMS if name in table.dims})
 
 
 def _input_of(dataset, path, kind):
@@ -142,19 +165,34 @@ def _level(coordinate, path, wanted):
     return index
 
 
-def _computed_again(stored, film, run):
-    """Draw the roughness again and run the contact model on it; use only the levels of `stored`."""
-    if any(line.get("heights") for line in run["lines"]["lines"]):
-        raise DataError(
-            "contact.nc: got a line that is a measured profile, need lines drawn from a spectrum: "
-            "its heights are in roughness.nc alone"
-        )
-    spec, layer = LineSpec(**run["lines"]), BoundaryLayer.model_construct(**run["boundary_layer"])
+def _model(run):
+    """Roughness, boundary layer, seed and gap of a study's values."""
+    layer = BoundaryLayer.model_construct(**run["boundary_layer"])
     gap = Gap(run["film_shape"], run["roughness_deformation"])
+    return LineSpec(**run["lines"]), layer, run["seed"], gap
+
+
+def _surfaces_again(stored, film, run):
+    """Draw the surfaces again and sample their contact at one operating point.
+
+    The grid of the surfaces depends on the films of all points.
+    """
+    spec, layer, seed, gap = _model(run)
+    wanted = xr.ones_like(film["film_thickness"], bool)
+    for name in wanted.dims:
+        wanted = wanted & (film[name] == stored[name].values)
+    slips = run["slide_to_roll_ratio"]
+    choices = layer, seed, slips, gap, None, wanted.drop_attrs()
+    return _at(stored, contact_of_surfaces(spec, run["length"], film, *choices))
+
+
+def _lines_again(stored, film, run):
+    """Draw the roughness again and run the contact model on it; use only the levels of `stored`."""
+    spec, layer, seed, gap = _model(run)
     ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
     numbers = stored["realisation"].values.tolist()
     for first in range(0, len(numbers), 8):  # a few at a time, for the memory that lines take
-        lines = roughness_batch(spec, run["seed"], numbers[first : first + 8])
+        lines = roughness_batch(spec, seed, numbers[first : first + 8])
         parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"], gap))
     options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
     return xr.concat(parts, "realisation", **options)
@@ -180,6 +218,7 @@ def in_words(explanation: Explanation) -> str:
         dims=CONTACT_DIMS,
         corrections=tuple(factor for key, factor in _CORRECTIONS.items() if film[key] != "none"),
         differing=explanation.differing,
+        surfaces=SURFACES,
         realised=[name for name in again if "realisation" in again[name].dims],
         stated=_stated,
     ).strip()

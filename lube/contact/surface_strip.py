@@ -89,6 +89,7 @@ def surface_contact(
     weaker: Values = 1.0,
     fewer: int = 1,
     slide_to_roll_ratio: xr.DataArray | float = 0.0,
+    wanted: xr.DataArray | None = None,
 ) -> xr.Dataset:
     """Find how often, and at how many positions, surfaces touch over the length of the rollers.
 
@@ -116,6 +117,9 @@ def surface_contact(
         How many times fewer surfaces are drawn than `SURFACES`, for a faster, less exact result.
     slide_to_roll_ratio : xarray.DataArray or float, optional
         For the passage width, which also has its dimensions; by default pure rolling.
+    wanted : xarray.DataArray, optional
+        At which of the films contact is sampled, by default at all. The choice does not change the
+        results there.
 
     Returns
     -------
@@ -126,8 +130,9 @@ def surface_contact(
         rollers move while a contact is in the strip, ``passage_width`` (m), and the scatter of a
         pair's share of breakthrough in a revolution of pure rolling, ``pair_deviation``, as
         `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film
-        is not known. Theory neglects the slope of a film with a shape. Where the oil answers the
-        surfaces, the expected numbers are NaN, and way and scatter those of the surfaces as drawn.
+        is not known or not wanted. Theory neglects the slope of a film with a shape. Where the oil
+        answers the surfaces, the expected numbers are NaN, and way and scatter those of the
+        surfaces as drawn.
 
     Raises
     ------
@@ -141,10 +146,12 @@ def surface_contact(
     sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
     sharp = np.broadcast_to(sharp / weaker, thickness.size)[known]
     values = {name: np.full(thickness.size, np.nan) for name in _VARIABLES}
+    wanted = xr.DataArray(True) if wanted is None else wanted
+    wanted = wanted.broadcast_like(thickness).transpose(*thickness.dims).values.ravel()[known]
     if known:
         some = [strips[point] for point in known]
         seeds = surface_seeds(seed, SURFACES // fewer)
-        for name, of_known in _contacts(spec, some, sharp, length, seeds, threads).items():
+        for name, of_known in _contacts(spec, some, sharp, wanted, length, seeds, threads).items():
             values[name][known] = of_known
     if gap.is_answered:
         values |= {name: np.full(thickness.size, np.nan) for name in _EXPECTED}
@@ -212,24 +219,28 @@ def strip_films(spec: LineSpecLike, film: xr.Dataset, gap: Gap) -> list[StripFil
     ]
 
 
-def _contacts(spec, strips, sharp, length, seeds, threads):
+def _contacts(spec, strips, sharp, wanted, length, seeds, threads):
     """Variables of `surface_contact` at some strips, shape (strips,) each."""
     moments = surface_moments(spec)
     known = zip(strips, sharp, strict=True)
     expected = np.array([strip.expected(moments, length, own) for strip, own in known]).T
-    certain, found = expected[0] > MANY, {name: np.empty(len(strips)) for name in _SAMPLED}
+    certain = expected[0] > MANY
+    found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
 
-    def sample(surface, some, certain):
-        own = [strips[point] for point in some]
-        sampled = _sampled(spec, surface, own, certain, sharp[some], length, seeds, threads)
+    def sample(surface, finest, some, certain):
+        own, choices = [strips[point] for point in some], (length, seeds, threads)
+        sampled = _sampled(spec, surface, finest, own, certain, sharp[some], *choices)
         for name, values in sampled.items():
             found[name][some] = values
 
-    for surface, some in _on_alike_grids(spec, strips):
-        sample(surface, some, certain[some])
+    for surface, alike in _on_alike_grids(spec, strips):
+        finest = _finest(surface, [strips[point] for point in alike])
+        some = alike[wanted[alike]]
+        if some.size:
+            sample(surface, finest, some, certain[some])
         holds = certain[some] & (found["breakthrough_probability"][some] < CERTAIN)
         if holds.any():  # few strips do not tell how often the layer breaks
-            sample(surface, some[holds], np.zeros(holds.sum(), bool))
+            sample(surface, finest, some[holds], np.zeros(holds.sum(), bool))
     passages = [strip.passage(moments, length) for strip in strips]
     perimeter = spec.points[0] * spec.spacing
     shares = zip(found["breakthrough_probability"], passages, strict=True)
@@ -261,10 +272,17 @@ def _on_alike_grids(spec, strips):
             yield surface, alike[first : first + at_once]
 
 
-def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
+def _finest(surface, strips):
+    """Points along the sides of the finest grid of nodes of some strips."""
+    shifts = [strip.answers[0].shift(surface.spacing[1]) for strip in strips if strip.answers]
+    return tuple(number >> min(shifts) for number in surface.points) if shifts else (1, 1)
+
+
+def _sampled(spec, surface, finest, strips, certain, sharp, length, seeds, threads=1):
     """Probabilities and numbers of contacts, with their intervals, shape (strips,) each.
 
-    `certain` says of each strip whether contact is certain there.
+    `certain` says of each strip whether contact is certain there; `finest` is the grid on which
+    the long waves of a surface are drawn, if the oil answers it.
     """
     down, along = surface.spacing
     reach = _reach(spec, down)
@@ -280,7 +298,7 @@ def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
     covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
 
     def on_one_surface(of_one):
-        return _on_one_surface(of_one, surface, covariances, strips, reach)
+        return _on_one_surface(of_one, surface, covariances, strips, reach, finest)
 
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
@@ -302,15 +320,13 @@ def _reach(spec, spacing):
     return longest, min(math.ceil(AROUND * oblique), longest)
 
 
-def _on_one_surface(seeds, surface, covariances, strips, reach):
+def _on_one_surface(seeds, surface, covariances, strips, reach, finest):
     """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 2)."""
     drawing, choosing = map(np.random.default_rng, seeds)
-    answered = [one for *_, one in strips if one]
-    coarser = max((one.points for one in answered), default=(1, 1))
-    *fields, long_waves = surface.draw(drawing, coarser)
+    *fields, long_waves = surface.draw(drawing, finest)
     fields, chosen, both = tuple(fields), choosing.random((4, STRIPS)), []
-    if any(len(one.answers) > 1 for one in answered):
-        both = surface.of_each(long_waves, coarser, drawing)
+    if any(one and len(one.answers) > 1 for *_, one in strips):
+        both = surface.of_each(long_waves, finest, drawing)
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points[1], BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []

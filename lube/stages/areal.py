@@ -1,11 +1,16 @@
 """The areal stage: contact over the rollers' length of the surface that the lines stand for."""
 
+from collections.abc import Sequence
+
 import xarray as xr
 
 from lube.contact.surface_strip import surface_contact
 from lube.grid.film_responses import with_surface_responses
+from lube.grid.gap import Gap
 from lube.schema import CONTACT_DIMS, label
+from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
+from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Datasets
 
 FEWER = 4
@@ -33,20 +38,54 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         As from `lube.contact.surface_strip.surface_contact`.
     """
     film, length = with_surface_responses(inputs), study.rollers.length
-    film = film.transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
-    slips = xr.DataArray(list(study.slips), dims=_SLIP, coords={_SLIP: list(study.slips)})
-
-    def contact(formulas, fewer):
-        choices = study.boundary_layer, study.seed, study.gap, threads, 1.0, fewer, slips
-        return surface_contact(study.line_spec, length, film.isel(film_formula=formulas), *choices)
-
-    found = [contact([0], 1)]
-    if study.has_surfaces and film.sizes["film_formula"] > 1:
-        found.append(contact(slice(1, None), FEWER))
-    found = xr.concat(found, "film_formula", join="exact")
-    # If the film is the same at all slips, so is the probability.
-    found = xr.broadcast(found.drop_attrs())[0]
-    found = found.transpose(*CONTACT_DIMS).copy(deep=True).assign(length=length)
+    if not study.has_surfaces:
+        film = film.isel(film_formula=[0])
+    choices = study.boundary_layer, study.seed, study.slips, study.gap, threads
+    found = contact_of_surfaces(study.line_spec, length, film, *choices).assign(length=length)
     if study.gap.is_answered:
         found = found.assign(surface_rms_deformation=film["surface_rms_deformation"].drop_attrs())
     return label(found, "areal")
+
+
+def contact_of_surfaces(
+    spec: LineSpecLike,
+    length: float,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    seed: int,
+    slips: Sequence[float],
+    gap: Gap,
+    threads: int | None = None,
+    wanted: xr.DataArray | None = None,
+) -> xr.Dataset:
+    """Find how often surfaces touch at operating points, by all film formulas.
+
+    Parameters
+    ----------
+    spec, length, film, boundary_layer, seed, gap, threads, wanted
+        As in `lube.contact.surface_strip.surface_contact`, of a ``film`` dataset.
+    slips : sequence of float
+        Levels of the slide-to-roll ratio.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `lube.contact.surface_strip.surface_contact`, unlabelled.
+
+    Raises
+    ------
+    StudyError, DataError
+        As from `lube.contact.surface_strip.surface_contact`.
+    """
+    film = film.transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
+    levels = xr.DataArray(list(slips), dims=_SLIP, coords={_SLIP: list(slips)})
+    found = []
+    for formulas, fewer in ((slice(1), 1), (slice(1, None), FEWER)):
+        if (some := film.isel(film_formula=formulas)).sizes["film_formula"]:
+            here = None if wanted is None else wanted.isel(film_formula=formulas)
+            choices = boundary_layer, seed, gap, threads, 1.0, fewer, levels, here
+            found.append(surface_contact(spec, length, some, *choices))
+    found = xr.concat(found, "film_formula", join="exact")
+    # If the film is the same at all slips, so is the probability.
+    found = xr.broadcast(found.drop_attrs())[0]
+    return found.transpose(*CONTACT_DIMS).copy(deep=True)

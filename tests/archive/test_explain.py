@@ -6,12 +6,14 @@ from itertools import product
 import numpy as np
 import pytest
 import xarray as xr
+from made import made
 
 from lube.archive.explain import explain, in_words
 from lube.contact.ensemble import gather
 from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
 from lube.schema import CONTACT_DIMS
+from lube.schema.stages import STAGES
 from lube.stages.contact import contact_statistics
 from lube.stages.film import film_table
 from lube.storage.netcdf import save
@@ -74,6 +76,48 @@ def test_contact_of_lines_that_the_oil_answers_is_computed_again(study, tmp_path
     result = explain(folder / "contact.nc", 2, **POINT, **slip)
     assert result.differing == []
     assert result.again["geometric_contact_probability"].item() > 0.0
+
+
+@pytest.fixture
+def of_surfaces(study, few_surfaces, tmp_path):
+    """Save contact of surfaces of the smoke study with changes, and what it was made from."""
+
+    def run(**changes):
+        choices = {"roughness": study.roughness.model_copy(update={"points": 12_000})}
+        mine = study.model_copy(update={"contact_model": ("surface",)} | choices | changes)
+        kinds = "lubricant", "film", "surface_response", "areal"
+        datasets = made(mine, kinds if mine.gap.is_answered else (kinds[0], kinds[1], kinds[3]))
+        for kind, dataset in datasets.items():
+            inputs = [tmp_path / f"{one}.nc" for one in STAGES[kind].inputs]
+            if kind == "areal" and mine.gap.is_answered:
+                inputs.append(tmp_path / "surface_response.nc")
+            save(dataset, tmp_path / f"{kind}.nc", kind, mine, inputs)
+        return tmp_path / "areal.nc"
+
+    return run
+
+
+def test_contact_of_surfaces_is_computed_again_at_points_of_every_level(of_surfaces):
+    path = of_surfaces()
+    with xr.open_dataset(path) as areal:
+        levels = [areal[name].values.tolist() for name in CONTACT_DIMS]
+    for point in [*product(*levels)][::5]:
+        result = explain(path, **dict(zip(CONTACT_DIMS, point, strict=True)))
+        assert result.differing == []
+        assert result.again["geometric_contact_probability"].item() > 0.0
+    words = in_words(result)
+    for stated in ("surfaces, fewer for other", "spawn(7)[5:]", "0.01 m", "the same bits"):
+        assert stated in words
+    assert "NOT" not in words and "realisation" not in words
+
+
+def test_contact_of_surfaces_that_the_oil_answers_is_computed_again(of_surfaces, study):
+    grid = study.operating_grid.model_copy(update={"temperature": (80.0,)})
+    changes = {"film_shape": "computed", "roughness_deformation": "computed"}
+    path = of_surfaces(operating_grid=grid, film_formulas=("paper",), **changes)
+    result = explain(path, slide_to_roll_ratio=0.1, force=1600.0, speed=100.0)
+    assert result.differing == []
+    assert 0.0 < result.again["geometric_contact_probability"].item() <= 1.0
 
 
 def test_mean_and_interval_are_computed_again_at_points_of_every_level(folder):
