@@ -57,11 +57,27 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
         infinity. For ``alpha_factor_coverage`` each realisation in turn is left out of the ensemble
         and taken as the records; it is the fraction of these cases whose interval contains 1.
     """
-    factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
-    logits = curves.logits(_lambda_ratios(comparison, factor))
-    logits = logits.transpose("factor", "film_formula", "record")
+    logits = alpha_logits(curves, comparison)
     model = curves.contact_model
     return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison, model)
+
+
+def alpha_logits(curves: RecordCurves, comparison: Data) -> xr.DataArray:
+    """Logits of the mean probability at the records, for each of `ALPHA_FACTORS`.
+
+    Parameters
+    ----------
+    curves, comparison
+        As in `fit_alpha`.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over (factor, film_formula, record).
+    """
+    factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
+    logits = curves.logits(_lambda_ratios(comparison, factor))
+    return logits.transpose("factor", "film_formula", "record")
 
 
 def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
