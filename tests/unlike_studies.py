@@ -277,5 +277,6 @@ def _write_records(study, manifest):
         columns = np.column_stack([times, 1e3 * voltage])
         header = "time [s],voltage [mV]"
         np.savetxt(manifest.with_name(name), columns, "%.8g", ",", header=header, comments="")
-        rows.append(f"{name},{point.force},{point.speed},{point.temperature}")
+        conditions = (str(point.levels[level]) for level in ("force", "speed", "temperature"))
+        rows.append(",".join([name, *conditions]))
     manifest.write_text("\n".join(rows), encoding="utf-8")
