@@ -191,7 +191,7 @@ class Choices:
         gap = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
         models = tuple(np.ravel(contact_model).tolist())
         given = [*gap.items(), ("load_sharing", load_sharing)]
-        for name, value in given + [("contact_model", model) for model in models]:
+        for name, value in given + [("contact_model", model) for model in models or [[]]]:
             kind = Study.model_fields[name].annotation
             options = CONTACT_MODELS if name == "contact_model" else get_args(kind)
             if value not in options:

@@ -30,7 +30,7 @@ _THINNEST = {"force": "1600 N", "speed": "600/7 rpm", "temperature": "80 degC"}
 _RADIUS = "50 mm"  # of the paper's rollers
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+)?"
-_NUMBERS = re.compile(rf"((?:{_NUMBER}[\s,]+)*{_NUMBER})\s*(1/\w+|[^\d\s/,.].*)")
+_NUMBERS = re.compile(rf"((?:{_NUMBER},?\s+)*{_NUMBER})\s*(1/\w+|[^\d\s/,.].*)")
 
 _RECORDS = """\
 # Measured records, one per line; paths start from this folder. Further columns, such as channel,
@@ -96,7 +96,9 @@ def _numbers(option, text):
     """Split ``100, 200 N`` into numbers and unit, as they are written."""
     match = _NUMBERS.fullmatch(text.strip())
     if match is None:
-        raise LubeError(f"--{option}: got {shown(text)}, need numbers with a unit, as in `1 2 mm`")
+        raise LubeError(
+            f"--{option}: got {shown(text)}, need numbers with a unit, as in `1.5 2 mm`"
+        )
     values, units = match[1].replace(",", " ").split(), match[2]
     if option in OF_ROLLERS and len(values) > 2:
         raise LubeError(f"--{option}: got {shown(text)}, need one number, or one for each roller")
