@@ -264,6 +264,7 @@ def test_the_trace_of_an_insulator_has_no_resistance(oil):
         ({"seed": 1.5}, "seed: got 1.5, need a whole number, at least 0"),
         ({"load_sharing": "all"}, "load_sharing: got 'all', need one of none, iterated"),
         ({"contact_model": "strip"}, "contact_model: got 'strip', need one of line, surface"),
+        ({"contact_model": []}, "contact_model: got [], need one of line, surface"),
         (
             {"contact_model": "surface", "roughness_deformation": "venner-1997"},
             "roughness_deformation: got venner-1997, need none or computed for contact",
