@@ -2,10 +2,10 @@ r"""How far the contact share of one pair of surfaces lies from the mean over al
 
 Two strips a distance s apart along the circumference have the fraction :math:`\rho(s)` of their
 contacts in common (`lube.contact.strip_film`). If groups of contacts come independently of one
-another, :math:`M = -\ln(1 - P)` of them are in the strip on average, and contact of both strips has
+another, :math:`n_g = -\ln(1 - P)` of them are in the strip on average, and contact of both strips has
 the covariance
 
-.. math:: c(s) = (1 - P)^2 \left( e^{M \rho(s)} - 1 \right)
+.. math:: c(s) = (1 - P)^2 \left( e^{n_g \rho(s)} - 1 \right)
 
 From it follows how far the share of time of one pair of rollers lies from the mean P over all.
 
@@ -14,13 +14,13 @@ surface that touched then meets other heights of the other, and touches more oft
 does. The contacts that two alignments with the surface i in common share beyond chance are the
 fraction
 
-.. math:: \kappa_i = \frac{\int \left( \Phi_2(u, u; w_i \rho_i(r)) - p^2 \right) dr}
+.. math:: \chi_i = \frac{\int \left( \Phi_2(u, u; w_i \rho_i(r)) - p^2 \right) dr}
           {\int \left( \Phi_2(u, u; \rho(r)) - p^2 \right) dr}
 
 of those of one alignment. :math:`\Phi_2` is the probability that both of two normal variables
 exceed the film u in rms heights, p that one does, :math:`w_i` the surface's part of the mean square
 height, and :math:`\rho_i` the correlation of its heights over the distance r. The part of the
-variance that new alignments do not average out follows from c(s) with :math:`M \kappa_i`.
+variance that new alignments do not average out follows from c(s) with :math:`n_g \chi_i`.
 """
 
 import numpy as np
@@ -68,7 +68,7 @@ def persistent_part(probability: float, lags: Array, common: Array, recurring: A
     probability, lags, common
         As in `pair_deviation`.
     recurring : numpy.ndarray, shape (roller,)
-        :math:`\kappa_i`, from `RecurringContacts`.
+        :math:`\chi_i`, from `RecurringContacts`.
 
     Returns
     -------

@@ -18,11 +18,11 @@ the rollers give way by :math:`\hat h_0`.
 
 The crests of a wave on a rough surface may lie at an angle, and the wave is
 :math:`\exp(i (k_x X + k_y Y))`. Then oil also flows along the rollers, with the conductance
-:math:`\kappa = \bar\rho H^3 / (\bar\eta \lambda)`, and the load does not change:
+:math:`\zeta = \bar\rho H^3 / (\bar\eta \lambda)`, and the load does not change:
 
 .. math::
 
-    \frac{d\hat q}{dX} + \kappa k_y^2 \hat p = i k_x c\, (\bar\rho \hat h + \bar\rho' H \hat p),
+    \frac{d\hat q}{dX} + \zeta k_y^2 \hat p = i k_x c\, (\bar\rho \hat h + \bar\rho' H \hat p),
     \qquad
     \hat h = \frac{1}{\pi} \int \hat p\, K_0(|k_y| |X - X'|)\, dX' + e^{i k_x X}
 """
