@@ -2,8 +2,8 @@ r"""How far the contact share of one pair of surfaces lies from the mean over al
 
 Two strips a distance s apart along the circumference have the fraction :math:`\rho(s)` of their
 contacts in common (`lube.contact.strip_film`). If groups of contacts come independently of one
-another, :math:`n_g = -\ln(1 - P)` of them are in the strip on average, and contact of both strips has
-the covariance
+another, :math:`n_g = -\ln(1 - P)` of them are in the strip on average, and contact of both strips
+has the covariance
 
 .. math:: c(s) = (1 - P)^2 \left( e^{n_g \rho(s)} - 1 \right)
 
