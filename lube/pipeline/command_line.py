@@ -12,7 +12,7 @@ from typing import Any
 from lube.errors import StudyError, located, shown
 from lube.pipeline.sources import from_here
 from lube.pipeline.study_files import one_line_errors
-from lube.study.resolve import study_files
+from lube.study.resolve import merged, study_files
 from lube.study.study import Study, load_study
 from lube.types import File
 
@@ -101,9 +101,9 @@ def changes_of(entries: Sequence[str]) -> dict[str, Any]:
     for entry in entries:
         _check_entry(entry)
         key, _, value = entry.partition("=")
-        changes[key] = value or None
         with suppress(yaml.YAMLError):  # a value that is not YAML is text
-            changes[key] = yaml.load(value, Loader=yaml.BaseLoader) or None
+            value = yaml.load(value, Loader=yaml.BaseLoader)
+        changes = merged(changes, {key: value or None})
     return changes
 
 

@@ -152,7 +152,7 @@ def _on_top(base, changes, where):
         case {"rig": dict(below)}, {"rig": {"preset": str(preset)}} if preset in PRESETS:
             kept = {name: below[name] for name in below.keys() - PRESETS[preset].settings.keys()}
             base = base | {"rig": kept}
-    return _merged(base, changes)
+    return merged(base, changes)
 
 
 def _without_replaced(below, above):
@@ -171,10 +171,11 @@ def _without_replaced(below, above):
     return kept
 
 
-def _merged(base, changes):
+def merged(base: Any, changes: Any) -> Any:
+    """Return a content with changes, which replace values one by one in nested sections."""
     if not (isinstance(base, dict) and isinstance(changes, dict)):
         return changes
-    return base | {key: _merged(base.get(key), value) for key, value in changes.items()}
+    return base | {key: merged(base.get(key), value) for key, value in changes.items()}
 
 
 def _with_paths_from(content, here, there):

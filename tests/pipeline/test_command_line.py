@@ -7,6 +7,7 @@ from studies import PAPER, SMOKE
 
 from lube.errors import RecordError, StudyError
 from lube.pipeline.command_line import (
+    changes_of,
     check_command_line,
     same_study,
     study_of_command,
@@ -123,3 +124,9 @@ def test_another_workflow_names_the_study_and_changes_its_values():
 def test_a_module_without_a_study_is_refused():
     line = one_line(StudyError, study_of_module, {"seed": 3})
     assert "study: got None, need the path of a study's file" in line
+
+
+def test_nested_keys_that_are_changed_one_by_one_are_merged_as_by_snakemake():
+    of_both = [f"rollers={{{roller}: {{radius: 30 mm}}}}" for roller in ("first", "second")]
+    entries = ["name=mine", *of_both, "rollers={first: {young_modulus: 200 GPa}}"]
+    assert changes_of(entries) == parse_config(entries)
