@@ -114,14 +114,14 @@ def _add_run(commands):
 
 def _add_explain(commands):
     explain = _add(commands, _explain, "trace and recompute a number of contact.nc or areal.nc")
-    explain.add_argument("path", help="a contact.nc or areal.nc, in the folder of its film.nc")
+    explain.add_argument("path", help="a contact.nc or areal.nc, in the folder of its study")
     units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
     for name in (*units, "slide-to-roll-ratio"):
         help_text = f"a level of the file{units.get(name, '')}, to within half a per cent"
         explain.add_argument(f"--{name}", type=float, help=help_text)
     for name in ("lubricant", "film-formula"):
         explain.add_argument(f"--{name}", help="by name; by default the first")
-    help_text = "number of the realisation of lines, or `all` for their mean; by default 0"
+    help_text = "number of the realisation of lines, or `all` with the mean; by default 0"
     explain.add_argument("--realisation", type=number_or_all, default=0, help=help_text)
 
 

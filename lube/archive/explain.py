@@ -19,7 +19,7 @@ from lube.grid.gap import Gap
 from lube.grid.levels import format_levels, level_index
 from lube.report.pages import render
 from lube.schema import CONTACT_DIMS
-from lube.stages.areal import contact_of_surfaces
+from lube.stages.areal import FEWER, contact_of_surfaces
 from lube.stages.contact import contact_statistics
 from lube.storage.netcdf import load
 from lube.storage.provenance import fingerprint, json_attribute
@@ -182,8 +182,8 @@ def _surfaces_again(stored, film, run):
     for name in wanted.dims:
         wanted = wanted & (film[name] == stored[name].values)
     slips = run["slide_to_roll_ratio"]
-    choices = layer, seed, slips, gap, None, wanted.drop_attrs()
-    return _at(stored, contact_of_surfaces(spec, run["length"], film, *choices))
+    given = spec, run["length"], film, layer, seed, slips, gap
+    return _at(stored, contact_of_surfaces(*given, wanted=wanted.drop_attrs()))
 
 
 def _lines_again(stored, film, run):
@@ -218,10 +218,16 @@ def in_words(explanation: Explanation) -> str:
         dims=CONTACT_DIMS,
         corrections=tuple(factor for key, factor in _CORRECTIONS.items() if film[key] != "none"),
         differing=explanation.differing,
-        surfaces=SURFACES,
+        surfaces=SURFACES // (1 if _is_first(explanation) else FEWER),
         realised=[name for name in again if "realisation" in again[name].dims],
         stated=_stated,
     ).strip()
+
+
+def _is_first(explanation):
+    """Whether the film is by the study's first formula."""
+    first = explanation.values["film"]["film_formulas"][0]
+    return explanation.contact["film_formula"].item() == first
 
 
 def _stated(array):

@@ -189,14 +189,17 @@ class Choices:
             If a study has no such choice.
         """
         gap = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
+        for name, value in (*gap.items(), ("load_sharing", load_sharing)):
+            _check_choice(name, value, get_args(Study.model_fields[name].annotation))
         models = tuple(np.ravel(contact_model).tolist())
-        given = [*gap.items(), ("load_sharing", load_sharing)]
-        for name, value in given + [("contact_model", model) for model in models or [[]]]:
-            kind = Study.model_fields[name].annotation
-            options = CONTACT_MODELS if name == "contact_model" else get_args(kind)
-            if value not in options:
-                raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
+        for model in models or [contact_model]:
+            _check_choice("contact_model", model, CONTACT_MODELS)
         return cls(Gap(**gap), models, load_sharing)
+
+
+def _check_choice(name, value, options):
+    if value not in options:
+        raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
 
 
 def one_name(argument: str, name: str) -> str:

@@ -80,6 +80,9 @@ def _each_by_name(found):
     flat = {}
     for name, values in found.items():
         by = {"load_share_curve", "resistance_formula"}.intersection(values.dims)
-        each = values.to_dataset(*by).items() if by else ()
-        flat |= {variable_of(name, one): value for one, value in each} or {name: values}
+        if by:
+            each = values.to_dataset(*by).items()
+            flat |= {variable_of(name, one): value for one, value in each}
+        else:
+            flat[name] = values
     return flat

@@ -97,7 +97,8 @@ def _numbers(option, text):
     match = _NUMBERS.fullmatch(text.strip())
     if match is None:
         raise LubeError(
-            f"--{option}: got {shown(text)}, need numbers with a unit, as in `1.5 2 mm`"
+            f"--{option}: got {shown(text)}, need numbers with a unit, "
+            "and spaces between them, as in `1.5 2 mm`"
         )
     values, units = match[1].replace(",", " ").split(), match[2]
     if option in OF_ROLLERS and len(values) > 2:

@@ -84,10 +84,10 @@ def surface_traces(
     way = surface.sides[1] / max(speeds) / STEPS * np.arange(STEPS)
 
     def of_piece(begin):
-        seeds = np.random.SeedSequence((seed, begins.index(begin))).spawn(9)[8]
+        seeds = np.random.SeedSequence((seed, begin // surface.points[0])).spawn(9)[8]
         moving = _moving(surface, np.random.default_rng(seeds), speeds)
         return {
-            point: _followed(surface, moving, *each, rows - begin, way)
+            point: _followed(surface, moving, *each, min(rows - begin, surface.points[0]), way)
             for point, each in known.items()
         }
 

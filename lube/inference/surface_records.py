@@ -101,12 +101,15 @@ def _by_formula(own, log_ratios, curves, films, has_shape):
     others = np.log(films["lambda_ratio"].transpose("film_formula", "record").values)
     others = (others + curve_offsets(films, has_shape))[1:]
     found = np.empty((4, *others.shape))
-    for record in range(others.shape[1]):
-        *limits, sizes = curves[..., record]
-        for values, limit in zip(found, limits, strict=False):
-            curve = contact_curve(log_ratios, limit, sizes)
-            values[:, record] = scipy.special.expit(curve.logit_at(others[:, record]))
-        found[3, :, record] = np.interp(others[:, record], log_ratios, sizes)
+    for record, films in enumerate(others.T):
+        mean, *_, sizes = curves[..., record]
+        curve = contact_curve(log_ratios, mean, sizes)
+        share = scipy.special.expit(curve.logit_at(films))
+        for row, each in enumerate(curves[:3, :, record]):
+            # A limit is as far from the mean as at the films of the curve, in parts of it.
+            parts = np.divide(each, mean, out=np.ones_like(mean), where=mean > 0.0)
+            found[row, :, record] = np.minimum(share * np.interp(films, log_ratios, parts), 1.0)
+        found[3, :, record] = np.interp(films, log_ratios, sizes)
     return np.concatenate([own[:, None], found], axis=1)
 
 

@@ -154,13 +154,13 @@ def expected_contacts(level: Array, moments: SurfaceMoments, length: float, widt
 
     The formula gives the expected Euler characteristic: the number of contacts less the holes in
     them. At high levels contacts have no holes. With :math:`u = h / \sqrt{m_0}`, the sides a along
-    rolling and b along the rollers, and the matrix M of the mean squares :math:`m_a` and
-    :math:`m_b` and the mean product of both slopes,
+    rolling and b along the rollers, and the matrix :math:`\Sigma` of the mean squares :math:`m_a`
+    and :math:`m_b` and the mean product of both slopes,
 
     .. math::
 
         Q(u) + \frac{a \sqrt{m_a} + b \sqrt{m_b}}{2 \pi \sqrt{m_0}}\, e^{-u^2/2}
-        + a b \frac{u}{(2 \pi)^{3/2}} \frac{\sqrt{\det M}}{m_0}\, e^{-u^2/2}
+        + a b \frac{u}{(2 \pi)^{3/2}} \frac{\sqrt{\det \Sigma}}{m_0}\, e^{-u^2/2}
 
     Parameters
     ----------
@@ -208,8 +208,8 @@ def appearing_contacts(
 
     .. math::
 
-        \left[ a b\, \frac{(u^2 - 1) \sqrt{\det M_{abt}}}{(2 \pi)^2 m_0^{3/2}}
-        + \frac{u \left( a \sqrt{\det M_{at}} + b \sqrt{\det M_{bt}} \right)}
+        \left[ a b\, \frac{(u^2 - 1) \sqrt{\det \Sigma_{abt}}}{(2 \pi)^2 m_0^{3/2}}
+        + \frac{u \left( a \sqrt{\det \Sigma_{at}} + b \sqrt{\det \Sigma_{bt}} \right)}
         {(2 \pi)^{3/2} m_0} + \frac{\sqrt{m_t}}{2 \pi \sqrt{m_0}} \right] e^{-u^2/2}
 
     Parameters

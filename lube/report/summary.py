@@ -121,7 +121,8 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         contacts={model: _contact(each.sel(first)) for model, each in contacts.items()},
         trends={model: _trends(each.sel(first)) for model, each in contacts.items()},
         spread=None if lines is None else _spread(film, lines, first),
-        held=_held(film, lines, results["tail"], first),
+        held=_held(film, lines, first),
+        deformed={model: _deformed(model, film, results, first) for model in contacts},
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[
             _trace(point, film, model, each, comparison)
@@ -246,9 +247,14 @@ def _of_surfaces(study, results):
     return xr.Dataset(found | {"pair_deviation": tail["surface_pair_deviation"].where(rolling)})
 
 
-def _held(film, contact, tail, first):
-    """Load on the line's asperities, and the numbers of points where the model does not hold."""
-    film, surfaces = film.sel(first), tail if contact is None else None
+def _deformed(model, film, results, first):
+    """Count the points where the oil changes the roughness by too large a part of the film."""
+    return int(deformed(film.sel(first), results["tail"] if model == "surface" else None).sum())
+
+
+def _held(film, contact, first):
+    """Load on the asperities, and the numbers of points where the model does not hold."""
+    film = film.sel(first)
     found, share = {"share": math.nan, "overloaded": 0, "merged": 0}, film.get("surface_load_share")
     if contact is not None:
         contact = contact.sel(first)
@@ -258,7 +264,6 @@ def _held(film, contact, tail, first):
             "merged": int(merged(contact, film).sum()),
         }
     return found | {
-        "deformed": int(deformed(film, surfaces).sum()),
         "small": LARGEST_DEFORMATION,
         "surface_share": None if share is None else share.max().item(),
         "rubbing": int(rubbing(film).sum()),

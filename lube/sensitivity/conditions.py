@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from types import SimpleNamespace
 
 import numpy as np
 import scipy.fft
@@ -18,7 +17,7 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.heights import equivalent_ratio
 from lube.study.line_spec import LineSpec
 from lube.study.oil_properties import lubricant_table
-from lube.study.rollers import BoundaryLayer
+from lube.study.rollers import BoundaryLayer, Roller
 from lube.study.study import Study
 from lube.study.uncertainty import Factor, check_uncertainty, deviating_lines
 from lube.types import Array
@@ -35,6 +34,27 @@ SECANT = 200e6
 """Pressure to which a secant goes if the definition of the coefficient is not known, Pa."""
 TRAVEL = 100.0
 """Length of a drawn line over its longest wavelength: more contact windows than are sampled."""
+
+
+@dataclass(frozen=True)
+class DeviatingRollers:
+    """Rollers as far as films depend on them, with a modulus and a roughness for each run.
+
+    Attributes
+    ----------
+    first : lube.study.rollers.Roller
+        The first roller.
+    length, reduced_radius : float
+        As of `lube.study.rollers.RollerPair`.
+    reduced_modulus, composite_rms_roughness : float or xarray.DataArray
+        As of `RollerPair`.
+    """
+
+    first: Roller
+    length: float
+    reduced_radius: float
+    reduced_modulus: float | xr.DataArray
+    composite_rms_roughness: float | xr.DataArray
 
 
 @dataclass(frozen=True)
@@ -173,12 +193,12 @@ class Deviating:
     def _rollers(self, values):
         """Return the rollers as far as films depend on them, with values for each run."""
         study, scale = self.study, 1.0 + values.get("young_modulus", 0.0)
-        return SimpleNamespace(
-            first=study.rollers.first,
-            length=study.rollers.length,
-            reduced_radius=study.rollers.reduced_radius,
-            reduced_modulus=study.rollers.reduced_modulus * scale,
-            composite_rms_roughness=self.rms_roughness(values),
+        return DeviatingRollers(
+            study.rollers.first,
+            study.rollers.length,
+            study.rollers.reduced_radius,
+            study.rollers.reduced_modulus * scale,
+            self.rms_roughness(values),
         )
 
     def rms_roughness(self, values: dict):

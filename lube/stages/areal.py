@@ -81,10 +81,16 @@ def contact_of_surfaces(
     levels = xr.DataArray(list(slips), dims=_SLIP, coords={_SLIP: list(slips)})
     found = []
     for formulas, fewer in ((slice(1), 1), (slice(1, None), FEWER)):
-        if (some := film.isel(film_formula=formulas)).sizes["film_formula"]:
-            here = None if wanted is None else wanted.isel(film_formula=formulas)
-            choices = boundary_layer, seed, gap, threads, 1.0, fewer, levels, here
-            found.append(surface_contact(spec, length, some, *choices))
+        some = film.isel(film_formula=formulas)
+        if not some.sizes["film_formula"]:
+            continue
+        contact = surface_contact(
+            *(spec, length, some, boundary_layer, seed, gap, threads),
+            fewer=fewer,
+            slide_to_roll_ratio=levels,
+            wanted=None if wanted is None else wanted.isel(film_formula=formulas),
+        )
+        found.append(contact)
     found = xr.concat(found, "film_formula", join="exact")
     # If the film is the same at all slips, so is the probability.
     found = xr.broadcast(found.drop_attrs())[0]

@@ -26,7 +26,7 @@ from lube.contact.surface_strip import SURFACES
 from lube.inference.at_records import model_at_records, study_films_at_records
 from lube.inference.study_shares import levels_named, log_lines
 from lube.schema import AT_RECORDS, LIMITS, label, model_dependent, values_with_limits, with_dims
-from lube.statistics.confidence import known_mean, probability_interval
+from lube.statistics.confidence import mean_or_nan, probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.study import Study
@@ -205,11 +205,11 @@ def agreement(
     within = (measured >= lower) & (measured <= upper)
     logits = scipy.special.logit(simulated[inside]) - scipy.special.logit(measured[inside])
     return {
-        "bias": known_mean(simulated - measured),
-        "rms_difference": np.sqrt(known_mean((simulated - measured) ** 2)),
-        "logit_rms_difference": np.sqrt(known_mean(logits**2)),
+        "bias": mean_or_nan(simulated - measured),
+        "rms_difference": np.sqrt(mean_or_nan((simulated - measured) ** 2)),
+        "logit_rms_difference": np.sqrt(mean_or_nan(logits**2)),
         "rank_correlation": _rank_correlation(simulated, measured),
-        "overlap_share": known_mean(np.where(np.isnan(lower), np.nan, within)),
+        "overlap_share": mean_or_nan(np.where(np.isnan(lower), np.nan, within)),
         "compared_records": simulated.size,
         "logit_records": int(np.count_nonzero(inside)),
     }
@@ -263,11 +263,11 @@ def _level_means(table, simulated):
         assigned = table[f"{name}_level"].values
         levels = np.unique(assigned[np.isfinite(assigned)])
         at = [(assigned == level) & np.isfinite(measured) for level in levels]
-        rows = [[known_mean(row[here & np.isfinite(row)]) for here in at] for row in simulated]
+        rows = [[mean_or_nan(row[here & np.isfinite(row)]) for here in at] for row in simulated]
         means |= {
             f"{name}_group": levels,
             f"simulated_mean_by_{name}": rows,
-            f"measured_mean_by_{name}": [known_mean(measured[here]) for here in at],
+            f"measured_mean_by_{name}": [mean_or_nan(measured[here]) for here in at],
         }
     return means
 

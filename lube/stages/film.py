@@ -108,7 +108,7 @@ def film_table(
     """
     levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
-    forces, speeds, slips = axes.coords.values()
+    forces, speeds, slips = (axes[name] for name in levels)
     options = with_shape, slips, inlet_shear_heating, inlet_meniscus, answered_lines
     asperities = {"rough_surfaces": rough_surfaces, "load_sharing": load_sharing}
     table = film_at(lubricant, rollers, forces, speeds, formulas, *options, **asperities)

@@ -18,7 +18,7 @@ from lube.inference.fits import fit_alpha, fit_layer_strength, study_strength
 from lube.inference.record_curves import RecordCurves, gauged_ratios, map_curves, own_curves
 from lube.inference.surface_records import reading_errors, surface_curves
 from lube.schema import AT_RECORDS, label, values_with_limits, with_dims
-from lube.statistics.confidence import known_mean
+from lube.statistics.confidence import mean_or_nan
 from lube.statistics.one_pair import quantile, standard_error
 from lube.study.study import Study
 from lube.types import Datasets
@@ -168,7 +168,7 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
             held, closed = _leave_one_out(curve, film, members[:, record])
             cases = held, held[closed], held[~closed], closed
-            coverage[:, record] = [known_mean(each) for each in cases]
+            coverage[:, record] = [mean_or_nan(each) for each in cases]
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")
     return xr.Dataset(with_dims("gauge", dict(zip(names, coverage, strict=True))))
 

@@ -45,8 +45,8 @@ def mean_over_first(values: Array) -> Array:
     return total / len(values)
 
 
-def known_mean(values: Array) -> float:
-    """Mean of the values that are known; NaN if there are none."""
+def mean_or_nan(values: Array) -> float:
+    """Mean; NaN if there are no values."""
     return np.mean(values) if values.size else np.nan
 
 

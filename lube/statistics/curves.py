@@ -191,7 +191,7 @@ def peaked_curve(
 def contact_curve(films: Array, probabilities: Array, sample_size: Array) -> Curve:
     r"""Fit a falling curve to probabilities of contact of a surface, at few films.
 
-    Contacts in a strip come nearly independently. So their number :math:`M = -\ln(1 - p)` is
+    Contacts in a strip come nearly independently. So their number :math:`n_g = -\ln(1 - p)` is
     interpolated between the films: its logarithm is nearly linear in the square of the film.
 
     Parameters

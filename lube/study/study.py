@@ -352,7 +352,7 @@ class Study(StrictModel):
         Parameters
         ----------
         needed : str
-            What came and what is needed, before the conductivity, for the message.
+            Beginning of the message, such as ``got choices, need``; the conductivity follows.
 
         Raises
         ------

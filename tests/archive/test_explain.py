@@ -105,10 +105,11 @@ def test_contact_of_surfaces_is_computed_again_at_points_of_every_level(of_surfa
         result = explain(path, **dict(zip(CONTACT_DIMS, point, strict=True)))
         assert result.differing == []
         assert result.again["geometric_contact_probability"].item() > 0.0
-    words = in_words(result)
-    for stated in ("surfaces, fewer for other", "spawn(7)[5:]", "0.01 m", "the same bits"):
-        assert stated in words
-    assert "NOT" not in words and "realisation" not in words
+    for formula, last in (("paper", 15), ("pan-hamrock", 3)):
+        words = in_words(explain(path, film_formula=formula, **POINT))
+        for stated in (f"s = 0 to {last}", "spawn(7)[5:]", "0.01 m", "the same bits"):
+            assert stated in words
+        assert "NOT" not in words and "realisation" not in words
 
 
 def test_contact_of_surfaces_that_the_oil_answers_is_computed_again(of_surfaces, study):

@@ -120,7 +120,7 @@ def test_nothing_is_overwritten_and_nothing_left_of_what_is_refused(new, tmp_pat
         (["a.yaml", "--force", "100"], "--force: got '100', need numbers with a unit"),
         (
             ["a.yaml", "--radius", "12,5 mm"],
-            "--radius: got '12,5 mm', need numbers with a unit, as in",
+            "--radius: got '12,5 mm', need numbers with a unit, and spaces",
         ),
         (["a.yaml", "--force", "1", "2", "mm"], "--force: wrong dimension or unit 'mm'"),
         (["a.yaml", "--radius", "1 2 3 mm"], "--radius: got '1 2 3 mm', need one number, or one"),

@@ -8,7 +8,12 @@ from made import made, on_few_surfaces
 
 from lube.contact.surface_strip import surface_contact
 from lube.inference.at_records import study_films_at_records
-from lube.inference.surface_records import reading_errors, surface_curves, surfaces_at_records
+from lube.inference.surface_records import (
+    _by_formula,
+    reading_errors,
+    surface_curves,
+    surfaces_at_records,
+)
 from lube.schema import LIMITS, values_with_limits
 from lube.stages import film_table
 from lube.study.oil_properties import lubricant_table
@@ -149,6 +154,23 @@ def test_other_film_formulas_are_read_from_the_curves(busy_study, few_surfaces, 
     assert (apart[0] == 0.0).all()
     assert (abs(apart[1]) > 0.0).all() and (abs(apart[1]) < 3.0 * np.hypot(*errors)[1]).all()
     assert (found["sample_size"] > 1.0).all()
+
+
+def test_limits_of_other_film_formulas_enclose_their_values_however_rare_contact_is():
+    """Limits of a rare probability may be 0; those of a frequent one are beyond the curve."""
+    ratios = np.geomspace(2.0, 6.0, 8)
+    mean = -np.expm1(-2000.0 * np.exp(-0.5 * ratios**2))
+    rare = mean < 1e-3
+    curve = [mean, np.where(rare, 0.0, 0.9 * mean), np.minimum(1.6 * mean, 1.0), 1000.0 * mean]
+    films = xr.DataArray(np.geomspace(1.8, 6.5, 40), dims="film_formula").expand_dims("record")
+    films = xr.Dataset({"lambda_ratio": films, "film_thickness": films})
+    films = films.transpose("film_formula", "record")
+    own = np.array([0.5, 0.4, 0.6, 100.0])[:, None]
+    found = _by_formula(own, np.log(ratios), np.array(curve)[..., None], films, False)
+    share, lower, upper, size = found[..., 0]
+    assert (lower <= share).all() and (share <= upper).all() and (upper <= 1.0).all()
+    assert (share[1:] > 0.0).all() and (lower[-3:] == 0.0).all()
+    assert found[:, 0, 0].tolist() == own[:, 0].tolist() and (size > 0.0).all()
 
 
 def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_study):
