@@ -229,7 +229,8 @@ def compare(spec, surfaces, surface, film, count):
     length = (ROWS + 0.5) * surface.spacing[0]
     strips = [film], np.array([False])
     seeds = surface_strip.surface_seeds(SEED, surface_strip.SURFACES)
-    found = surface_strip._sampled(spec, surface, *strips, [curvature], length, seeds)
+    finest = surface_strip._finest(surface, strips[0])
+    found = surface_strip._sampled(spec, surface, finest, *strips, [curvature], length, seeds)
     names = ["geometric_contact_probability", "breakthrough_probability"]
     names += ["contacts", "breakthroughs"]
     for name, values in zip(names, counted.reshape(count, 4).T, strict=True):
