@@ -32,13 +32,18 @@ def study():
     return load_study(PAPER)
 
 
+@pytest.fixture(scope="module")
+def deviating(study):
+    return Deviating.of(study)
+
+
 def one(values):
     return {name: xr.DataArray([value], dims="run") for name, value in values.items()}
 
 
-def films(study, values, at=None, **shape):
+def films(deviating, values, at=None, **shape):
     at = points() if at is None else at
-    ((_, found),) = Deviating.of(study).films(one(values), at, **shape)
+    ((_, found),) = deviating.films(one(values), at, **shape)
     return found
 
 
@@ -48,7 +53,7 @@ def points():
 
 @pytest.mark.parametrize("formula", ["paper", "dowson-toyoda", "computed"])
 @pytest.mark.parametrize("heating", ["none", "wilson-sheu-1983"])
-def test_deviating_films_are_those_of_a_study_with_these_values(study, formula, heating):
+def test_deviating_films_are_those_of_a_study_with_these_values(study, deviating, formula, heating):
     uncertain = study.uncertainty
     deviations = {
         **{"viscosity": 0.08, "pressure_viscosity_coefficient": -0.1, "temperature": 0.7},
@@ -57,7 +62,7 @@ def test_deviating_films_are_those_of_a_study_with_these_values(study, formula, 
         "film_formula": uncertain.film_formula.choices.index(formula),
         "inlet_shear_heating": uncertain.inlet_shear_heating.choices.index(heating),
     }
-    found = films(study, deviations, with_shape=False).squeeze()
+    found = films(deviating, deviations, with_shape=False).squeeze()
     oil = lubricant_table(study.lubricants, [60.7])
     oil["dynamic_viscosity"] *= 1.08
     oil["pressure_viscosity_coefficient"] *= 0.9
@@ -69,9 +74,9 @@ def test_deviating_films_are_those_of_a_study_with_these_values(study, formula, 
 
 
 @pytest.mark.parametrize("definition", ["slope-at-atmospheric", "secant"])
-def test_a_coefficient_by_another_definition_is_converted(study, definition):
+def test_a_coefficient_by_another_definition_is_converted(study, deviating, definition):
     number = study.uncertainty.pressure_viscosity_definition.choices.index(definition)
-    found = films(study, {"pressure_viscosity_definition": number}).squeeze()
+    found = films(deviating, {"pressure_viscosity_definition": number}).squeeze()
     oil = lubricant_table(study.lubricants, [60.0])
     alpha, viscosity = (oil[name].item() for name in OIL[1::-1])
     span = 200e6 if definition == "secant" else None
@@ -80,9 +85,9 @@ def test_a_coefficient_by_another_definition_is_converted(study, definition):
     assert found["film_thickness"].item() == pytest.approx(expected["film_thickness"].item(), 1e-5)
 
 
-def test_heights_that_are_not_gaussian_touch_under_another_film(study):
+def test_heights_that_are_not_gaussian_touch_under_another_film(study, deviating):
     """In a sample as in many, and not at all if the heights are known."""
-    deviating, ratio = Deviating.of(study), xr.DataArray([2.0, 4.0], dims="run")
+    ratio = xr.DataArray([2.0, 4.0], dims="run")
     samples = {name: xr.DataArray([value] * 2, dims="run") for name, value in HEIGHTS.items()}
     found = deviating.equivalent(ratio, samples)
     expected = deviating.heights(ratio.values, np.full(2, -0.1), np.full(2, 3.4))
@@ -93,21 +98,21 @@ def test_heights_that_are_not_gaussian_touch_under_another_film(study):
     assert Deviating.of(known).equivalent(ratio, samples) is ratio
 
 
-def test_without_deviations_films_are_those_of_the_study(study):
-    found = films(study, {"force": 0.0}).squeeze()
+def test_without_deviations_films_are_those_of_the_study(study, deviating):
+    found = films(deviating, {"force": 0.0}).squeeze()
     oil = lubricant_table(study.lubricants, [60.0])
     expected = film_table(oil, study.rollers, [400.0], [120.0], ["paper"]).squeeze()
     assert found["film_thickness"].item() == pytest.approx(expected["film_thickness"].item(), 1e-6)
 
 
-def test_deviating_lines_are_those_of_a_study_with_these_values(study):
+def test_deviating_lines_are_those_of_a_study_with_these_values(study, deviating):
     own = study.line_spec
     deviations = {
         **{"first_rms_roughness": 0.1, "second_rms_roughness": -0.1, "hurst_exponent": 0.65},
         "longest_wavelength": 0.6e-3 / own.longest_wavelength - 1.0,
         "shortest_wavelength": 4e-6 / own.lines[0].shortest_wavelength - 1.0,
     }
-    found = Deviating.of(study).lines(deviations)
+    found = deviating.lines(deviations)
     expected = load_study(PAPER, {"name": "changed", **CHANGED}).line_spec
     assert found.spacing == expected.spacing
     assert found.points[0] < expected.points[0]  # shorter, so that runs are fast
@@ -118,27 +123,27 @@ def test_deviating_lines_are_those_of_a_study_with_these_values(study):
     np.testing.assert_allclose(pair_moments(found), pair_moments(expected), rtol=0.03)
 
 
-def test_layers_deviate(study):
-    found = Deviating.of(study).layer({"critical_thickness": -0.5, "shear_strength": 0.5})
+def test_layers_deviate(study, deviating):
+    found = deviating.layer({"critical_thickness": -0.5, "shear_strength": 0.5})
     assert found.critical_thickness == pytest.approx(2.5e-9)
     assert found.shear_strength == pytest.approx(1.5e6)
 
 
-def test_a_little_beyond_the_data_the_viscosity_goes_on(study):
+def test_a_little_beyond_the_data_the_viscosity_goes_on(deviating):
     colder = points().assign(temperature=("point", [40.0]))
     found = [
-        films(study, {"temperature": shift}, colder)["film_thickness"].item()
+        films(deviating, {"temperature": shift}, colder)["film_thickness"].item()
         for shift in (-1.0, 0.0, 1.0)
     ]
     steps = np.diff(np.log(found))
     assert steps[0] == pytest.approx(steps[1], rel=0.05) and steps[0] < 0.0
 
 
-def test_heights_of_both_rollers_alike_are_those_of_each(study):
+def test_heights_of_both_rollers_alike_are_those_of_each(deviating):
     together = {"rms_roughness": 0.2, "second_rms_roughness": 0.1}
     apart = {"first_rms_roughness": 0.2, "second_rms_roughness": 1.2 * 1.1 - 1.0}
-    one, other = (Deviating.of(study).lines(values) for values in (together, apart))
+    one, other = (deviating.lines(values) for values in (together, apart))
     assert one.rms_height == pytest.approx(other.rms_height)
-    rms = [Deviating.of(study).rms_roughness(values) for values in (together, apart)]
+    rms = [deviating.rms_roughness(values) for values in (together, apart)]
     assert rms[0] == pytest.approx(rms[1])
     assert rms[0] == pytest.approx(np.hypot(*one.rms_height))
