@@ -66,12 +66,14 @@ def percent(share: float) -> str:
 
     Examples
     --------
-    >>> percent(9.934e-07)
-    '0.0000993 %'
+    >>> percent(9.934e-07), percent(1.65e-39)
+    ('0.0000993 %', '1.65e-37 %')
     """
     share = float(share)
     if not math.isfinite(share):
         return "–"
+    if 0.0 < share < 1e-8:
+        return f"{100.0 * share:.3g} %"
     digits = np.format_float_positional(100.0 * share, precision=3, fractional=False, trim="-")
     return f"{digits} %"
 

@@ -114,6 +114,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     lines = results["contact"] if "line" in study.contact_model else None
     known = {"line": _of_lines, "surface": _of_surfaces}
     contacts = {model: known[model](study, results) for model in study.contact_model}
+    compared = study.contact_model if study.compares_surfaces else ("line",)
     return render(
         "findings.md",
         study=study,
@@ -125,7 +126,8 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         deformed={model: _deformed(model, film, results, first) for model in contacts},
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[
-            _trace(point, film, model, each, comparison)
+            # A simulated rig runs with lines.
+            _trace(point, film, model, each, comparison if model in compared else None)
             for point in study.trace_points
             for model, each in contacts.items()
         ],
