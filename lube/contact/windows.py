@@ -262,8 +262,12 @@ class ContactWindows:
         places = [self._place(point, spec) for point in known]
         pair = RarePair(spec, seed, number, max((one.film.size for one in places), default=1))
         waves = [Waves(line, self._grid) for line in pair.lines]
-        once = functools.lru_cache(maxsize=1)(lambda *answers: _filtered(waves, answers))
-        filtered = (once(*answers) for answers in self._answers[known])
+
+        @functools.lru_cache(maxsize=1)
+        def filtered_by(*answers):
+            return _filtered(waves, answers)
+
+        filtered = (filtered_by(*answers) for answers in self._answers[known])
         ratios = np.reshape([speed_ratios(slip) for slip in slips.flat], (*slips.shape, 2))
         ratios = np.broadcast_to(ratios, (self.size, *ratios.shape[1:]))[known]
         found = rare_contact_under(pair, places, filtered, self._factors[known], ratios)
