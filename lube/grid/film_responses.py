@@ -69,7 +69,8 @@ def wave_responses(
     The wavelengths fall, each by the same ratio, from the lines' longest wave to `SHORTEST` of the
     narrowest contact's half-width, or to the lines' shortest wave. At each operating point waves
     are solved for from the longest to the shortest, until the oil changes one by less than
-    `UNCHANGED` anywhere. The response to shorter waves is 1. The error of interpolation is a root
+    `UNCHANGED` anywhere. The response to shorter waves is 1; in `rms_deformation` they count as
+    changed as much as the shortest one that was solved for. The error of interpolation is a root
     mean square over the contact. It is found at the two wavelengths midway between the stored one
     at which the response is most curved and its neighbours; the larger of the two is stored.
     """
@@ -147,6 +148,8 @@ def _deformation(response, heights):
     """Rms change of surfaces by the oil, from the mean square heights of their waves."""
     inside = np.abs(response["response_position"]) <= 1.0
     square = np.mean(np.abs(response.values[..., inside] - 1.0) ** 2, axis=-1)
+    solved = np.where(square > 0.0, np.arange(square.shape[-1]), 0)
+    square = np.take_along_axis(square, np.maximum.accumulate(solved, axis=-1), axis=-1)
     rms = six_digits(np.sqrt(np.einsum("...raw,raw", square, heights)))
     one = response.isel(roller=0, wave_angle=0, wavelength=0, response_position=0, drop=True)
     return one.copy(data=rms)

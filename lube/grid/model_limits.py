@@ -6,7 +6,8 @@ import xarray as xr
 LARGEST_DEFORMATION = 0.1
 """Largest ratio of the rms change of the roughness by the oil to the film at which the linear
 response counts as valid. High summits change by three times the rms, 0.3 of the film. Single waves
-that change by more deviate from the linear response (Figure 35)."""
+that change by more deviate from the linear response (Figure 35). Waves too short to be solved for
+count as changed as much as the shortest that was."""
 LARGEST_SHARE = 0.1
 """Largest share of the load on the surfaces' asperities at which the film of smooth rollers counts
 as valid."""

@@ -8,6 +8,7 @@ from lube.ehl.response import WaveResponse
 from lube.grid.film_responses import (
     ANGLES,
     SURFACE_VARIABLES,
+    _deformation,
     _line_heights,
     _surface_heights,
 )
@@ -92,6 +93,17 @@ def test_waves_of_a_surface_with_a_lay_are_those_of_the_surface_drawn(make_spec,
     expected = np.sum(power * np.log(length)) / np.sum(power)
     found = np.sum(weights * np.log(wavelengths)) / np.sum(weights)
     assert found == pytest.approx(expected, abs=0.05)
+
+
+def test_waves_too_short_to_be_solved_for_count_as_changed_as_the_shortest_that_was():
+    dims = "point", "roller", "wave_angle", "wavelength", "response_position"
+    changes = np.array([[0.5, 0.3, 0.2, 0.0, 0.0], [0.5, 0.4, 0.3, 0.2, 0.1]])
+    levels = {"response_position": [0.0]}
+    response = xr.DataArray(1.0 + 1j * changes[:, None, None, :, None], levels, dims)
+    heights = np.array([1.0, 2.0, 3.0, 4.0, 5.0])
+    changes[0, 3:] = 0.2
+    expected = np.sqrt(changes**2 @ heights)
+    np.testing.assert_allclose(_deformation(response, heights[None, None]), expected, rtol=1e-5)
 
 
 def test_the_deformation_is_that_of_all_waves_together(responses, make_spec):
