@@ -11,23 +11,20 @@ T. Iwanaga, W. Usher and J. Herman, Toward SALib 2.0, SESMO 4 (2022) 18155.
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import permutations
 
 import numpy as np
-from SALib.analyze import morris as morris_analysis
 from SALib.analyze import sobol as sobol_analysis
 from SALib.sample import morris as morris_sample
 from SALib.sample import sobol as sobol_sample
 
-from lube.threads import on_threads
 from lube.types import Array
 
 BASE_SAMPLES = 1024
-TRAJECTORIES = 200
-"""Paths of Morris' design; each changes every factor once."""
-LEVELS = 10
+TRAJECTORIES = 760
+"""Paths of Morris' design; each changes every factor once. Twice the pairs of `LEVELS`."""
+LEVELS = 20
 """Levels of each factor in Morris' design."""
-EVEN = 4096
-"""Sizes of a factor from which its variance follows."""
 RESAMPLES = 100
 """Samples drawn anew for the intervals."""
 
@@ -94,12 +91,12 @@ def morris(
     predict: Callable[[Array], Array],
     seed: int,
     choices: Mapping[str, int] | None = None,
-    sizes: Callable[[Array], Array] = np.asarray,
 ) -> dict[str, Array]:
     r"""Screen the factors by Morris' method.
 
     The levels of a factor are the middles of `LEVELS` equal parts of its distribution. A step leads
-    half-way through them, or from one choice to any other.
+    from any of them to any other, so that the mean square of the changes d tells what the factor
+    does to the variance, however it acts.
 
     Parameters
     ----------
@@ -107,66 +104,44 @@ def morris(
         As in `sobol`.
     choices : mapping of str to int, optional
         Factors that are choices, with the number of each.
-    sizes : callable, optional
-        From samples to sizes of the factors, both of shape (samples, factors); by default the
-        factors are uniformly distributed.
 
     Returns
     -------
     dict of str to numpy.ndarray
-        Shape (factors, points): ``elementary_effect``, the mean of the absolute effects of two such
-        steps, or from one choice to another; ``elementary_effect_error`` and
-        ``elementary_effect_deviation``; and ``screened_deviation``, the standard deviation that the
-        factor gives by itself to a function that changes by d with a step. It is
-        :math:`\sqrt{\langle d^2 \rangle (1 - 1/k) / 2}` of a choice among k, else the standard
-        deviation of the factor's size x times
-        :math:`\sqrt{\langle d^2 \rangle / \langle \Delta x^2 \rangle}`.
+        Shape (factors, points): ``elementary_effect``, the mean of the absolute changes, each over
+        the part of the distribution that its step leads through, or from one choice to another;
+        ``elementary_effect_error`` and ``elementary_effect_deviation``; and
+        ``screened_deviation``, :math:`\sqrt{\langle d^2 \rangle (1 - 1/k) / 2}` with k levels: the
+        standard deviation that the factor causes while all others stay as they are. NaN where the
+        film of a sample is not known.
     """
-    problem = _problem(names)
-    unit = morris_sample.sample(problem, TRAJECTORIES, num_levels=LEVELS, seed=seed)
     choices = choices or {}
-    paths = _between_any_choices(unit, names, choices, seed)
-    values = predict(paths)
-    options = {"num_levels": LEVELS, "num_resamples": RESAMPLES, "seed": seed}
-    # SALib divides each change by the step between its own levels.
-    step = LEVELS / (2.0 * (LEVELS - 1.0))
-    scale = step * np.array([1.0 if name in choices else 2.0 for name in names])
-    parts = _variances(sizes, paths)
-    for name, count in choices.items():
-        parts[names.index(name)] = 0.5 - 0.5 / count
-
-    def of_point(column):
-        if not np.isfinite(column).all():
-            return np.full((4, len(names)), np.nan)
-        found = morris_analysis.analyze(problem, unit, column, **options)
-        own = "mu", "mu_star", "mu_star_conf", "sigma"
-        mean, absolute, error, deviation = (np.ma.filled(found[key], np.nan) for key in own)
-        square = mean**2 + deviation**2 * (1.0 - 1.0 / TRAJECTORIES)
-        effects = np.array([absolute, error, deviation], float) * scale
-        return np.concatenate([effects, [np.sqrt(square * parts) * step]])
-
-    found = np.stack(on_threads(of_point, values.T), axis=-1)
-    keys = ("elementary_effect", "elementary_effect_error", "elementary_effect_deviation")
-    return dict(zip((*keys, "screened_deviation"), found, strict=True))
-
-
-def _between_any_choices(unit, names, choices, seed):
-    """Paths through the middles of the levels, each of which changes a choice to any other."""
-    paths = (np.rint((LEVELS - 1) * unit) + 0.5) / LEVELS
-    paths = paths.reshape(TRAJECTORIES, -1, len(names))
+    counts = np.array([choices.get(name, LEVELS) for name in names])
+    ends = morris_sample.sample(_problem(names), TRAJECTORIES, num_levels=2, seed=seed).astype(int)
+    ends = ends.reshape(TRAJECTORIES, -1, len(names))
     generator = np.random.default_rng(seed)
-    for name, count in choices.items():
-        ends = np.tile(np.arange(count), (TRAJECTORIES, 1))
-        ends = generator.permuted(ends, axis=1)[:, :2]
-        column = paths[..., names.index(name)]
-        chosen = np.take_along_axis(ends, (column > 0.5).astype(int), axis=1)
-        column[:] = (chosen + 0.5) / count
-    return paths.reshape(unit.shape)
+    levels = np.stack([_pairs_of_levels(count, generator) for count in counts], axis=-1)
+    paths = (np.take_along_axis(levels, ends, axis=1) + 0.5) / counts
+    values = predict(paths.reshape(-1, len(names))).reshape(*paths.shape[:2], -1)
+    values[..., ~np.isfinite(values).all(axis=(0, 1))] = np.nan
+    # Each step changes one factor.
+    steps = np.diff(paths, axis=1)
+    order = np.argsort(np.abs(steps).argmax(axis=2), axis=1)
+    steps = np.take_along_axis(steps.sum(axis=2), order, axis=1)
+    changes = np.take_along_axis(np.diff(values, axis=1), order[..., None], axis=1)
+    steps[:, [name in choices for name in names]] = 1.0
+    effects = changes / steps[..., None]
+    size = np.abs(effects)
+    part = (0.5 - 0.5 / counts)[:, None]
+    return {
+        "elementary_effect": size.mean(axis=0),
+        "elementary_effect_error": 1.96 * size.std(axis=0, ddof=1) / np.sqrt(TRAJECTORIES),
+        "elementary_effect_deviation": effects.std(axis=0, ddof=1),
+        "screened_deviation": np.sqrt(part * np.mean(changes**2, axis=0)),
+    }
 
 
-def _variances(sizes, paths):
-    """Variance of each factor over the mean square of its steps along the paths."""
-    factors = paths.shape[1]
-    even = np.tile((np.arange(EVEN) + 0.5)[:, None] / EVEN, factors)
-    steps = np.diff(sizes(paths).reshape(TRAJECTORIES, -1, factors), axis=1)
-    return np.var(sizes(even), axis=0) * TRAJECTORIES / np.sum(steps**2, axis=(0, 1))
+def _pairs_of_levels(count, generator):
+    """Draw the ends of the steps of a factor, all pairs of its levels equally often."""
+    pairs = generator.permutation(list(permutations(range(count), 2)))
+    return generator.permutation(np.resize(pairs, (TRAJECTORIES, 2)))

@@ -9,7 +9,8 @@ from lube.schema import POINT_DIMS, label
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.indices import morris, sobol
 from lube.sensitivity.predictor import BAND, Predictor
-from lube.sensitivity.samples import SEED, deviations
+from lube.sensitivity.runs import SEEDS
+from lube.sensitivity.samples import SEED
 from lube.study.study import Study
 from lube.types import Datasets
 
@@ -33,7 +34,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         single, values = sobol(*sampled)
         grouped, _ = sobol(*sampled, of_factor)
         choices = {one.name: len(one.given.choices) for one in factors if one.is_choice}
-        screened = morris(*sampled, choices, lambda unit: _sizes(factors, unit))
+        choices[SEED] = SEEDS
+        screened = morris(*sampled, choices)
     table = _limits(single, "factor") | _limits(grouped, "factor_group", "group_")
     table |= _limits(screened, "factor")
     with np.errstate(invalid="ignore"):
@@ -58,12 +60,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     groups = list(dict.fromkeys(of_factor))
     coordinates = deviating.levels | {"factor": names, "factor_group": groups}
     return label(xr.Dataset(found, coordinates), "sensitivity")
-
-
-def _sizes(factors, unit):
-    """Sizes of the factors, and of the seed, in some samples."""
-    by_name = deviations(factors, unit[:, :-1])
-    return np.column_stack([*by_name.values(), unit[:, -1]])
 
 
 def _limits(found, dim, prefix=""):
