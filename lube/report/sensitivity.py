@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.grid.operating_points import by_contact_model
 from lube.report.key_tables import markdown_table
 from lube.report.pages import percent, rounded
 from lube.schema import POINT_DIMS
@@ -10,10 +11,11 @@ from lube.sensitivity.samples import SEED
 from lube.study.uncertainty import CHOICES, spoken
 
 _BANDS = {
-    "mean": "are within the interval of the mean over pairs of rollers",
-    "pair": "within the band of one pair",
+    "mean": "within the interval of the mean over pairs of rollers",
+    "pair": "within the band of one pair only",
     "assumptions": "within that of the assumptions only",
     "none": "in none of the bands",
+    "": "not judged, as a film or a band is not known",
 }
 _PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
@@ -75,14 +77,17 @@ def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
 
 
 def _explained(records):
-    """Say how many records each band explains."""
+    """Say how many records each band explains, by each contact model."""
     if records is None:
         return
-    needed = records["band_needed"].values
-    said = ", ".join(f"{np.sum(needed == name)} {words}" for name, words in _BANDS.items())
-    yield (
-        f"Of {np.sum(needed != '')} {records['origin'].item()} records, {said} (`record_bands.nc`)."
-    )
+    origin, is_exact = records["origin"].item(), records["measured_share_lower"].isnull()
+    for model, of_model in by_contact_model(records)["band_needed"].groupby("contact_model"):
+        counts = ((words, np.sum(of_model.values == name)) for name, words in _BANDS.items())
+        said = "; ".join(f"{number} {words}" for words, number in counts if number)
+        by = f"Of {of_model.size} {origin} records by contact of the {model}"
+        yield f"{by}: {said} (`record_bands.nc`)."
+    if is_exact.any():
+        yield f"{is_exact.sum().item()} of them have no interval: they are taken as exact."
 
 
 def _to_measure(shown, factors, conditions):
