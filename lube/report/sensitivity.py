@@ -7,6 +7,7 @@ from lube.grid.operating_points import by_contact_model
 from lube.report.key_tables import markdown_table
 from lube.report.pages import percent, rounded
 from lube.schema import POINT_DIMS
+from lube.sensitivity.findings import LEFT, above_noise, narrowing
 from lube.sensitivity.samples import SEED
 from lube.study.uncertainty import CHOICES, spoken
 
@@ -20,8 +21,9 @@ _BANDS = {
 _PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
 _MEASURED = (
-    "Of the quantities, this is the one that, if it were known exactly, would make the standard "
-    "deviation of the logarithm of the probability less than any other would:"
+    f"Of the quantities, this is the one of which a measurement that leaves {percent(LEFT)} of its "
+    "variance would lessen the standard deviation of the logarithm of the probability most, all "
+    "choices of the model being open:"
 )
 _UNITS = {"force": "N", "speed": "r/min", "temperature": "°C"}
 _WORDS = """
@@ -29,7 +31,8 @@ _WORDS = """
 
 By what the probability of breakthrough is multiplied, or divided, as each quantity goes through its
 range, or a choice is made otherwise: means over random values of all others, at three operating
-points (`sensitivity.nc`). Deviations are from the study's values.
+points (`sensitivity.nc`). Deviations are from the study's values. A dash is for what is not told
+from the effect of the random numbers.
 """
 
 
@@ -62,10 +65,11 @@ def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
         ", ".join(f"{one[name].item():.4g} {unit}" for name, unit in _UNITS.items())
         for one in (points.isel(point=order[place]) for place in places)
     ]
-    rows = []
+    rows, is_told = [], above_noise(shown, "elementary_effect")
     for name in strength["factor"].values[np.argsort(-strength.values)]:
         one = shown.sel(factor=name)
-        changes = [f"{rounded(change):g}" for change in np.exp(one["elementary_effect"].values)]
+        effects = np.exp(one["elementary_effect"].where(is_told.sel(factor=name)).values)
+        changes = ["–" if np.isnan(each) else f"{rounded(each):g}" for each in effects]
         words = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
         rows.append((spoken(name), *words, *changes))
     ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
@@ -91,14 +95,14 @@ def _explained(records):
 
 
 def _to_measure(shown, factors, conditions):
-    """Say which quantity, if it were known, would narrow the band most."""
+    """Say which quantity, if it were measured well, would narrow the band most."""
     measurable = [name for name in factors if name not in CHOICES]
     if not measurable:
         return ""
-    parts = np.clip(shown["first_order"].sel(factor=measurable).transpose("point", ...), 0.0, 1.0)
+    gains = narrowing(shown, measurable).transpose("point", "factor").values
     said = [
-        f"the {spoken(measurable[of_point.argmax()])} at {where}, "
-        f"by {percent(1.0 - np.sqrt(1.0 - of_point.max()))}"
-        for of_point, where in zip(parts.values, conditions, strict=True)
+        f"the {spoken(measurable[gain.argmax()])} at {where}, by {percent(gain.max())}"
+        for gain, where in zip(gains, conditions, strict=True)
+        if gain.max() > 0.0
     ]
-    return f"{_MEASURED} {'; '.join(said)}."
+    return f"{_MEASURED} {'; '.join(said)}." if said else ""
