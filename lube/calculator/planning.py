@@ -136,8 +136,8 @@ def _reading_error(rollers, table, gap, slip, rig, ohm, seed):
     known, spec = Rig(preset=rig), rollers.lines
     if np.isnan(rollers.resistivity):
         raise StudyError(
-            f"rig: got {rig!r} with rollers that do not conduct, need none: they show no resistance "
-            "that a rig could read"
+            f"rig: got {rig!r} with rollers that do not conduct, need none: they show no "
+            "resistance that a rig could read"
         )
     windows = ContactWindows(spec, table, rollers.layer, gap)
     traces = windows.trace(draw_realisation(spec, seed, RIG_REALISATIONS), slip)
