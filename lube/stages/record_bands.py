@@ -49,24 +49,28 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         names += [f"simulated_probability{end}", f"predicted_share{end}"]
     kept = comparison.reset_coords()[["record", *names, *_CONDITIONS]].drop_attrs()
     table = kept.set_coords(_CONDITIONS)
-    points = xr.Dataset({name: ("point", table[name].values) for name in POINT_DIMS})
+    upper = table["predicted_share_upper"]
+    assumed = list(_assumed(study, inputs, comparison))
+    for end, values in zip(LIMITS[1:], np.stack(assumed, axis=1), strict=True):
+        table[f"assumed_share{end}"] = upper.copy(data=six_digits(values).reshape(upper.shape))
+    table["band_needed"] = upper.dims, _needed(table, comparison["share_error"].values)
+    return label(table, "record_bands")
+
+
+def _assumed(study, inputs, comparison):
+    """Ends of the band of the assumptions at all records, for each contact model."""
+    points = xr.Dataset({name: ("point", comparison[name].values) for name in POINT_DIMS})
     with one_blas_thread():  # the number of threads would change the last digits
         deviating = Deviating.of(study)
         predictor = Predictor.of(deviating, inputs["sensitivity_runs"])
         means, places = predictor.draws(points)
-    slip = abs(table["slide_to_roll_ratio"].values - rolling(study.slips))
+    slip = abs(comparison["slide_to_roll_ratio"].values - rolling(study.slips))
     means[:, slip > NEAR] = np.nan
     trials = _trials(comparison, inputs.get("surface_records"))
-    bands = []
     for model in by_contact_model(comparison)["contact_model"].values:
         is_known = model in deviating.choices("contact_model", study.contact_model[0])
         shares = _shares(means if is_known else np.nan * means, trials[model], places)
-        bands.append(np.quantile(shares, ENDS, axis=0))
-    upper = table["predicted_share_upper"]
-    for end, values in zip(LIMITS[1:], np.stack(bands, axis=1), strict=True):
-        table[f"assumed_share{end}"] = upper.copy(data=six_digits(values).reshape(upper.shape))
-    table["band_needed"] = upper.dims, _needed(table, comparison["share_error"].values)
-    return label(table, "record_bands")
+        yield np.quantile(shares, ENDS, axis=0)
 
 
 def _shares(mean, trials, place):
