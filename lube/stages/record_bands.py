@@ -58,7 +58,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 
 def _assumed(study, inputs, comparison):
-    """Ends of the band of the assumptions at all records, for each contact model."""
+    """Find the ends of the band of the assumptions at all records, for each contact model."""
     points = xr.Dataset({name: ("point", comparison[name].values) for name in POINT_DIMS})
     with one_blas_thread():  # the number of threads would change the last digits
         deviating = Deviating.of(study)
@@ -74,14 +74,14 @@ def _assumed(study, inputs, comparison):
 
 
 def _shares(mean, trials, place):
-    """Shares of pairs about their means, as normal as `prediction_limits` takes them."""
+    """Draw shares of pairs about their means, as normal as `prediction_limits` takes them."""
     # A record is worth one trial at least.
     deviation = np.sqrt(mean * (1.0 - mean) / np.maximum(trials, 1.0))
     return np.clip(mean + scipy.special.ndtri(place) * deviation, 0.0, 1.0)
 
 
 def _trials(comparison, surfaces):
-    """Independent trials that the record of one pair is worth, by contact model."""
+    """Count the independent trials that one pair's record is worth, by contact model."""
     windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
     size = effective_sample_size(comparison["breakthrough_probability"].values, windows)
     found = {"line": size / comparison["scatter_ratio"].values}
