@@ -30,7 +30,7 @@ _OF_NO_FILE = {
     "roughness_factor": ("factor on the roughness of both rollers", "1"),
     "position": ("position from the line of centres", "m"),
     "assumed_breakthrough_probability": (
-        "breakthrough probability, 5 to 95 % over all that is not known exactly",
+        "breakthrough probability, 5 to 95 % over what is not known exactly",
         "1",
     ),
     "half_width": ("expected half-width of the 95 % interval, relative to the quantity", "1"),

@@ -1,4 +1,4 @@
-"""The band of an answer over all that is not known exactly."""
+"""The band of an answer over quantities that are not known exactly."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -48,7 +48,10 @@ def assumed_limits(
     slip: float,
     seed: int,
 ) -> dict[str, xr.DataArray]:
-    """Find the band of the probability of breakthrough over all that is not known exactly.
+    """Find the band of the probability of breakthrough over what is not known exactly.
+
+    It is over `RANGES`, which are of quantities: the choices of the model are those of the answer
+    unless `bands` has them.
 
     Parameters
     ----------
@@ -66,8 +69,8 @@ def assumed_limits(
     Returns
     -------
     dict of str to xarray.DataArray
-        ``assumed_breakthrough_probability_lower`` and ``_upper``, below which 5 and 95 % of the
-        samples lie; NaN where a film is not known.
+        ``assumed_breakthrough_probability_lower`` and ``_upper``, below which 5 and 95 % of
+        `SAMPLES` samples lie; NaN where a film is not known.
 
     Raises
     ------

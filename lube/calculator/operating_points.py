@@ -222,9 +222,10 @@ def contact_probability(
     seed : int, optional
         Seed of the roughness.
     bands : bool or dict, optional
-        Whether to find the band of the probability over all that is not known exactly: a dict in
-        the form of a study's section ``uncertainty``, such as ``{"temperature": {"range": "+- 3 K",
-        "source": "thermocouple"}}``; or True for usual ranges. It takes some seconds for each
+        Whether to find the band of the probability over what is not known exactly: a dict in the
+        form of a study's section ``uncertainty``, such as ``{"temperature": {"range": "+- 3 K",
+        "source": "thermocouple"}}``; or True for usual ranges of quantities, without choices of
+        the model. It is from 128 samples, 32 for surfaces, and takes some seconds for each
         operating point of lines under flat films, some minutes for surfaces. It needs Gaussian
         heights that no formula flattens.
 
@@ -241,7 +242,8 @@ def contact_probability(
         attribute ``remarks`` says so, before the remarks of `film`.
 
         With `bands` also ``assumed_breakthrough_probability_lower`` and ``_upper``, between which
-        90 % of the means over pairs lie, by the first film formula and contact model.
+        90 % of the means over pairs lie, by the first film formula and contact model unless
+        `bands` has choices.
 
         For the surface, by importance sampling: ``surface_breakthrough_probability`` and
         ``surface_geometric_contact_probability``, anywhere along the rollers, and the mean numbers

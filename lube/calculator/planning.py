@@ -99,6 +99,7 @@ def plan(
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     turns = bare_number("turns", turns, above=0.0)
+    ohm = single(amount("threshold", threshold, "ohm", above=0.0))
     choices = Choices.of(film_shape, roughness_deformation, "none", "line")
     check_realisations(realisations, seed)
     point = force, speed, temperature
@@ -108,7 +109,7 @@ def plan(
     windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
     size = sample_size(contact["breakthrough_probability"], windows).ravel()
     found = slopes(spec, table, rollers.layer, choices.gap, seed)
-    reading = _reading_error(rollers, table, choices.gap, slip, rig, threshold, seed)
+    reading = _reading_error(rollers, table, choices.gap, slip, rig, ohm, seed)
     reach = spec.longest_wavelength / spec.spacing
     ratio = scatter_ratio(turns, ratios, spec.points, reach, 1.0, 0.0)
     error = relative_error(found.probability, size, ratio, reading)
@@ -125,17 +126,19 @@ def plan(
     return with_remarks(answer, table, rollers)
 
 
-def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
+def _reading_error(rollers, table, gap, slip, rig, ohm, seed):
     """Relative error of the share that a known rig reads of another pair, in one revolution."""
     if rig is None:
         return 0.0
     if rig not in PRESETS:
         raise StudyError(f"rig: got {rig!r}, {right_one(rig, PRESETS)}")
-    ohm = single(amount("threshold", threshold, "ohm", above=0.0))
     experiment = Experiment(thresholds={"values": [ohm], "units": "ohm"}, threshold=f"{ohm!r} ohm")
     known, spec = Rig(preset=rig), rollers.lines
     if np.isnan(rollers.resistivity):
-        raise StudyError("rig: got one for rollers that do not conduct, need none")
+        raise StudyError(
+            f"rig: got {rig!r} with rollers that do not conduct, need none: they show no "
+            "resistance that a rig could read"
+        )
     windows = ContactWindows(spec, table, rollers.layer, gap)
     traces = windows.trace(draw_realisation(spec, seed, RIG_REALISATIONS), slip)
     film, half_width = table["film_thickness"], table["contact_half_width"]

@@ -8,14 +8,15 @@ from contextlib import suppress
 import pandas as pd
 
 from lube.commands.run import repository
-from lube.errors import LubeError, located
+from lube.errors import LubeError, StudyError, located
 from lube.grid.plausibility import overview, remarks
 from lube.pipeline.command_line import changes_of, study_of_command
 from lube.pipeline.study_files import StudyFiles
 from lube.report.pages import count
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
-from lube.study.uncertainty import check_uncertainty
+from lube.study.text_files import read_yaml
+from lube.study.uncertainty import check_uncertainty, spoken
 from lube.types import File
 
 
@@ -66,6 +67,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
                 check_uncertainty(study)
         except LubeError as error:
             notes.append(str(error))
+        notes += _taken_over(path, study, arguments["changes"])
     lines = {
         "study": f"{study.name}: valid{', see the remarks below' if notes else ''}",
         "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),
@@ -83,6 +85,18 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     }
     lines = [f"{name:18}{text}" for name, text in lines.items()]
     return [*lines, *(f"Remark: {note}" for note in notes)], refused
+
+
+def _taken_over(path, study, changes):
+    """Say which ranges are those of the study that this one is based on."""
+    content = read_yaml(path, StudyError)
+    own = {*(content.get("uncertainty") or ()), *((changes or {}).get("uncertainty") or ())}
+    names = [spoken(one.name) for one in study.uncertainty.factors() if one.name not in own]
+    if "based_on" in content and names:
+        yield (
+            f"uncertainty: {content['based_on']} gives the ranges and choices of "
+            f"{', '.join(names)}; replace those that are not yours"
+        )
 
 
 def _expected_run(study, points):

@@ -63,6 +63,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``marks``: points outside the model and those with less contact than at a thicker film, of
           lines; those where the linear response to roughness is not valid, and those where
           asperities of the surfaces carry much of the load;
+        - ``factors``: what the band of the assumptions is over;
         - ``sampled``: whether the study has probabilities by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
@@ -95,6 +96,9 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
             name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
             for name, where in marks.items()
         },
+        "factors": datasets["sensitivity"]["factor"].values.tolist()
+        if "sensitivity" in datasets
+        else [],
         "sampled": not tail.attrs["remarks"],
         "regimes": film["regime"].attrs["flag_meanings"].split(),
         "validity": {

@@ -10,6 +10,11 @@ from lube.study.uncertainty import spoken
 
 MOST = 5
 """Rows of each table."""
+_NARROWER = (
+    "The band is that of the assumptions, all choices of the model being open: narrower is the "
+    "standard deviation of the logarithm of the probability, on average over the operating points. "
+    "Where a quantity's index is not above that of the random numbers it counts as none."
+)
 _POINT = ("force [N]", "speed [r/min]", "temperature [°C]", "expected contact share")
 
 
@@ -75,14 +80,16 @@ def _durations(points):
 
 def _others(points):
     """Tabulate which quantities to measure otherwise, and how well."""
-    narrowing = points["narrowing"].mean("point")
-    best = np.argsort(-narrowing.values)[:MOST]
+    gain = points["narrowing"].mean("point")
+    best = [one for one in np.argsort(-gain.values)[:MOST] if gain.values[one] > 0.0]
+    if not best:
+        return "No quantity narrows the band of the assumptions by more than the noise."
     rows = zip(
-        map(spoken, narrowing["factor"].values[best]),
+        map(spoken, gain["factor"].values[best]),
         points["range_of_factor"].values[best],
         points["accuracy_of_factor"].values[best],
-        map(percent, narrowing.values[best]),
+        map(percent, gain.values[best]),
         strict=True,
     )
-    headings = ("measure otherwise", "now uncertain by", "accuracy that is enough")
-    return markdown_table((*headings, "narrows the band of the assumptions by"), rows)
+    headings = "measure otherwise", "now uncertain by", "measured to", "narrows the band by"
+    return f"{markdown_table(headings, rows)}\n\n{_NARROWER}"

@@ -3,23 +3,27 @@
 import numpy as np
 import xarray as xr
 
+from lube.grid.operating_points import by_contact_model
 from lube.report.key_tables import markdown_table
 from lube.report.pages import percent, rounded
 from lube.schema import POINT_DIMS
+from lube.sensitivity.findings import LEFT, above_noise, narrowing
 from lube.sensitivity.samples import SEED
 from lube.study.uncertainty import CHOICES, spoken
 
 _BANDS = {
-    "mean": "are within the interval of the mean over pairs of rollers",
-    "pair": "within the band of one pair",
+    "mean": "within the interval of the mean over pairs of rollers",
+    "pair": "within the band of one pair only",
     "assumptions": "within that of the assumptions only",
     "none": "in none of the bands",
+    "": "not judged, as a film or a band is not known",
 }
 _PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
 _MEASURED = (
-    "Of the quantities, this is the one that, if it were known exactly, would make the standard "
-    "deviation of the logarithm of the probability less than any other would:"
+    f"Of the quantities, this is the one of which a measurement that leaves {percent(LEFT)} of its "
+    "variance would lessen the standard deviation of the logarithm of the probability most, all "
+    "choices of the model being open:"
 )
 _UNITS = {"force": "N", "speed": "r/min", "temperature": "°C"}
 _WORDS = """
@@ -27,7 +31,8 @@ _WORDS = """
 
 By what the probability of breakthrough is multiplied, or divided, as each quantity goes through its
 range, or a choice is made otherwise: means over random values of all others, at three operating
-points (`sensitivity.nc`). Deviations are from the study's values.
+points (`sensitivity.nc`). Deviations are from the study's values. A dash is for what is not told
+from the effect of the random numbers.
 """
 
 
@@ -60,10 +65,11 @@ def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
         ", ".join(f"{one[name].item():.4g} {unit}" for name, unit in _UNITS.items())
         for one in (points.isel(point=order[place]) for place in places)
     ]
-    rows = []
+    rows, is_told = [], above_noise(shown, "elementary_effect")
     for name in strength["factor"].values[np.argsort(-strength.values)]:
         one = shown.sel(factor=name)
-        changes = [f"{rounded(change):g}" for change in np.exp(one["elementary_effect"].values)]
+        effects = np.exp(one["elementary_effect"].where(is_told.sel(factor=name)).values)
+        changes = ["–" if np.isnan(each) else f"{rounded(each):g}" for each in effects]
         words = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
         rows.append((spoken(name), *words, *changes))
     ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
@@ -75,25 +81,28 @@ def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
 
 
 def _explained(records):
-    """Say how many records each band explains."""
+    """Say how many records each band explains, by each contact model."""
     if records is None:
         return
-    needed = records["band_needed"].values
-    said = ", ".join(f"{np.sum(needed == name)} {words}" for name, words in _BANDS.items())
-    yield (
-        f"Of {np.sum(needed != '')} {records['origin'].item()} records, {said} (`record_bands.nc`)."
-    )
+    origin, is_exact = records["origin"].item(), records["measured_share_lower"].isnull()
+    for model, of_model in by_contact_model(records)["band_needed"].groupby("contact_model"):
+        counts = ((words, np.sum(of_model.values == name)) for name, words in _BANDS.items())
+        said = "; ".join(f"{number} {words}" for words, number in counts if number)
+        by = f"Of {of_model.size} {origin} records by contact of the {model}"
+        yield f"{by}: {said} (`record_bands.nc`)."
+    if is_exact.any():
+        yield f"{is_exact.sum().item()} of them have no interval: they are taken as exact."
 
 
 def _to_measure(shown, factors, conditions):
-    """Say which quantity, if it were known, would narrow the band most."""
+    """Say which quantity, if it were measured well, would narrow the band most."""
     measurable = [name for name in factors if name not in CHOICES]
     if not measurable:
         return ""
-    parts = np.clip(shown["first_order"].sel(factor=measurable).transpose("point", ...), 0.0, 1.0)
+    gains = narrowing(shown, measurable).transpose("point", "factor").values
     said = [
-        f"the {spoken(measurable[of_point.argmax()])} at {where}, "
-        f"by {percent(1.0 - np.sqrt(1.0 - of_point.max()))}"
-        for of_point, where in zip(parts.values, conditions, strict=True)
+        f"the {spoken(measurable[gain.argmax()])} at {where}, by {percent(gain.max())}"
+        for gain, where in zip(gains, conditions, strict=True)
+        if gain.max() > 0.0
     ]
-    return f"{_MEASURED} {'; '.join(said)}."
+    return f"{_MEASURED} {'; '.join(said)}." if said else ""

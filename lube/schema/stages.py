@@ -341,6 +341,7 @@ _ROWS = (
         "record_bands",
         "which band of the model explains each record",
         inputs=("comparison", "sensitivity_runs"),
+        inputs_with={"surface_records": "compares_surfaces"},
         target="sensitivity",
         only_with=("uncertainty", "is_sampled", *_LINE, "conducts", "has_records"),
     ),

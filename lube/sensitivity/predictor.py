@@ -122,12 +122,13 @@ class Predictor:
             scaled = missed / known.loc[list(at.itertuples(index=False, name=None))].to_numpy()
             absolute.append(np.sqrt(np.mean(missed**2)))
             relative.append(np.sqrt(np.mean(scaled**2)))
-            counts.append(left_out.size)
+            counts.append((left_out.size, left_out.sum()))
         return {
             "surrogate_model": ("surrogate_model", [", ".join(model) for model in self.surrogates]),
             "surrogate_error": ("surrogate_model", six_digits(np.array(absolute))),
             "relative_surrogate_error": ("surrogate_model", six_digits(np.array(relative))),
-            "run_count": ("surrogate_model", counts),
+            "run_count": ("surrogate_model", [every for every, _ in counts]),
+            "left_out_count": ("surrogate_model", [left_out for _, left_out in counts]),
             "film_surrogate_error": ((), six_digits(np.array(self.film_error)).item()),
         }
 
@@ -152,8 +153,8 @@ class Predictor:
         points = stacked_points(self.deviating) if points is None else points
         return np.concatenate([self._of_part(part, points) for part in parts])
 
-    def band(self, points: xr.Dataset, samples: int = 1024) -> Pair:
-        """Find the band of the probability at some operating points.
+    def draws(self, points: xr.Dataset, samples: int = 1024) -> Pair:
+        """Draw probabilities at some operating points, and for each a place among pairs of rollers.
 
         Parameters
         ----------
@@ -164,12 +165,14 @@ class Predictor:
 
         Returns
         -------
-        lower, upper : numpy.ndarray
-            Probabilities that 5 and 95 % of the samples lie below, shape (points,).
+        probabilities : numpy.ndarray
+            Means over pairs, shape (samples, points).
+        places : numpy.ndarray
+            Part of the pairs whose share is less, from 0 to 1, shape (samples, 1).
         """
-        factors = len(self.deviating.factors) + 1
-        unit = quantiles(samples, factors, self.deviating.study.seed)
-        return tuple(np.exp(np.quantile(self.log_probability(unit, points), BAND, axis=0)))
+        columns = len(self.deviating.factors) + 2  # the seed, and the pair
+        unit = quantiles(samples, columns, self.deviating.study.seed)
+        return np.exp(self.log_probability(unit[:, :-1], points)), unit[:, -1:]
 
     def _of_part(self, unit, points):
         deviating = self.deviating

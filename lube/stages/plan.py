@@ -10,6 +10,7 @@ from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip
 from lube.inference import planning
 from lube.schema import POINT_DIMS, label
+from lube.sensitivity.findings import LEFT, narrowing
 from lube.sensitivity.samples import SEED
 from lube.statistics.one_pair import scatter_ratio
 from lube.study.rig_settings import OWN_RIG
@@ -25,8 +26,6 @@ _GIVEN = {
     "layer strength": ("layer",),
 }
 """Uncertain quantities, and groups of them, of which each inference does without."""
-LEFT = 0.1
-"""Part of a quantity's variance that a good measurement of it leaves."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -130,10 +129,8 @@ def _assumed(sensitivity):
 
 def _to_measure(study, sensitivity, names):
     """Which uncertain quantity narrows the band most, and how well to measure it."""
-    part = sensitivity["first_order"].sel(factor=names).clip(0.0, 1.0)
-    part = part / part.sum("factor").clip(min=1e-3)  # the choices of the model being made
-    narrowing = (1.0 - np.sqrt(1.0 - part)).transpose("factor", *POINT_DIMS).drop_attrs()
-    found = xr.Dataset({"narrowing": narrowing.copy(data=_digits(narrowing.values))})
+    narrower = narrowing(sensitivity, names).transpose("factor", *POINT_DIMS).drop_attrs()
+    found = xr.Dataset({"narrowing": narrower.copy(data=_digits(narrower.values))})
     given = [getattr(study.uncertainty, name) for name in names]
     found["range_of_factor"] = "factor", [one.in_words for one in given]
     found["accuracy_of_factor"] = "factor", [one.within(LEFT**0.5) for one in given]

@@ -1,16 +1,26 @@
 """The record_bands stage: which of the model's bands explains the contact share of each record."""
 
 import numpy as np
+import scipy.special
 import xarray as xr
 
+from lube.contact.ensemble import windows_in
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import six_digits
+from lube.grid.levels import rolling
+from lube.grid.operating_points import by_contact_model
 from lube.schema import LIMITS, POINT_DIMS, label
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.predictor import Predictor
+from lube.statistics.confidence import CONFIDENCE
+from lube.statistics.sample_size import effective_sample_size
 from lube.study.study import Study
 from lube.types import Datasets
 
+ENDS = (1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0
+"""Quantiles at the ends of the band of the assumptions."""
+NEAR = 0.01
+"""Difference of slide-to-roll ratios that films hardly show."""
 _CONDITIONS = (*POINT_DIMS, "slide_to_roll_ratio", "origin")
 _BANDS = {
     "mean": "simulated_probability",
@@ -23,39 +33,73 @@ _BANDS = {
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``record_bands.nc``; see `lube.stages`.
 
-    A band explains a record whose contact share lies in it. The band of the mean is its 95 %
-    interval, that of a pair the 95 % prediction interval of one pair's record. The band of the
-    assumptions holds 90 % of the means over pairs at the conditions of the record, in pure rolling;
-    it is widened by as much as one pair differs from the mean. All are by the first film formula.
+    A band explains a record whose contact share lies in it. All bands hold 95 %: that of the mean
+    over pairs is its confidence interval, widened by the error with which the share was measured;
+    that of a pair is the prediction interval of one pair's record; that of the assumptions holds
+    shares of one pair each, drawn about means that the study's assumptions give. It is known
+    nearest to pure rolling, for contact models that the study, or its section ``uncertainty``,
+    chooses. All are by the first film formula.
+
+    The interval of a record within itself is not used: it is that of the mean over pairs, and so
+    has the scatter of one pair in it already.
     """
     comparison = inputs["comparison"].isel(film_formula=0, drop=True)
-    comparison = comparison.isel(contact_model=0, drop=True, missing_dims="ignore")
     names = [f"measured_share{end}" for end in LIMITS]
     for end in LIMITS[1:]:
         names += [f"simulated_probability{end}", f"predicted_share{end}"]
     kept = comparison.reset_coords()[["record", *names, *_CONDITIONS]].drop_attrs()
     table = kept.set_coords(_CONDITIONS)
-    points = xr.Dataset({name: ("point", table[name].values) for name in POINT_DIMS})
-    with one_blas_thread():  # the number of threads would change the last digits
-        predictor = Predictor.of(Deviating.of(study), inputs["sensitivity_runs"])
-        band = predictor.band(points)
-    mean = comparison["simulated_probability"].values
-    for end, assumed in zip(LIMITS[1:], band, strict=True):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            wider = table[f"predicted_share{end}"].values / mean
-        wider = np.where(np.isfinite(wider), wider, 1.0)
-        table[f"assumed_share{end}"] = "record", six_digits(np.clip(assumed * wider, 0.0, 1.0))
-    table["band_needed"] = "record", _needed(table)
+    upper = table["predicted_share_upper"]
+    assumed = list(_assumed(study, inputs, comparison))
+    for end, values in zip(LIMITS[1:], np.stack(assumed, axis=1), strict=True):
+        table[f"assumed_share{end}"] = upper.copy(data=six_digits(values).reshape(upper.shape))
+    table["band_needed"] = upper.dims, _needed(table, comparison["share_error"].values)
     return label(table, "record_bands")
 
 
-def _needed(table):
-    """Name the narrowest band that explains each record."""
-    share = table["measured_share"].values
-    limits = {
-        name: [table[f"{variable}{end}"].values for end in LIMITS[1:]]
-        for name, variable in _BANDS.items()
-    }
-    known = np.isfinite([share, *(each for pair in limits.values() for each in pair)]).all(axis=0)
-    inside = [(share >= lower) & (share <= upper) for lower, upper in limits.values()]
-    return np.where(known, np.select(inside, list(limits), "none"), "")
+def _assumed(study, inputs, comparison):
+    """Find the ends of the band of the assumptions at all records, for each contact model."""
+    points = xr.Dataset({name: ("point", comparison[name].values) for name in POINT_DIMS})
+    with one_blas_thread():  # the number of threads would change the last digits
+        deviating = Deviating.of(study)
+        predictor = Predictor.of(deviating, inputs["sensitivity_runs"])
+        means, places = predictor.draws(points)
+    slip = abs(comparison["slide_to_roll_ratio"].values - rolling(study.slips))
+    means[:, slip > NEAR] = np.nan
+    trials = _trials(comparison, inputs.get("surface_records"))
+    for model in by_contact_model(comparison)["contact_model"].values:
+        is_known = model in deviating.choices("contact_model", study.contact_model[0])
+        shares = _shares(means if is_known else np.nan * means, trials[model], places)
+        yield np.quantile(shares, ENDS, axis=0)
+
+
+def _shares(mean, trials, place):
+    """Draw shares of pairs about their means, as normal as `prediction_limits` takes them."""
+    # A record is worth one trial at least.
+    deviation = np.sqrt(mean * (1.0 - mean) / np.maximum(trials, 1.0))
+    return np.clip(mean + scipy.special.ndtri(place) * deviation, 0.0, 1.0)
+
+
+def _trials(comparison, surfaces):
+    """Count the independent trials that one pair's record is worth, by contact model."""
+    windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
+    size = effective_sample_size(comparison["breakthrough_probability"].values, windows)
+    found = {"line": size / comparison["scatter_ratio"].values}
+    if surfaces is not None:
+        first = surfaces.isel(film_formula=0)
+        found["surface"] = (first["sample_size"] / first["scatter_ratio"]).values
+    return found
+
+
+def _needed(table, error):
+    """Name the narrowest band that explains each record; empty where that is not known.
+
+    The prediction interval of one pair includes the error of the measured share.
+    """
+    share, inside, is_known = table["measured_share"].values, [], True
+    for name, variable in _BANDS.items():
+        lower, upper = (table[f"{variable}{end}"].values for end in LIMITS[1:])
+        more = 0.0 if name == "pair" else scipy.special.ndtri(ENDS[1]) * error
+        inside.append((share >= lower - more) & (share <= upper + more))
+        is_known = is_known & np.isfinite(share + lower + upper)
+    return np.select(inside, list(_BANDS), np.where(is_known, "none", ""))

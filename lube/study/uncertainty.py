@@ -326,7 +326,10 @@ def check_uncertainty(study) -> None:
     """
     uncertain, spec = study.uncertainty, study.line_spec
     if study.load_sharing != "none":
-        raise StudyError(f"got one with load_sharing {study.load_sharing}, need load_sharing none")
+        raise StudyError(
+            f"load_sharing: got {study.load_sharing}, need none: probabilities of random values "
+            "are sampled without the load that asperities carry"
+        )
     if not uncertain.factors():
         raise StudyError("got none, need an uncertain quantity or choice")
     if uncertain.temperature:

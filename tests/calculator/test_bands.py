@@ -1,4 +1,4 @@
-"""The bands of an answer: of one pair, and over all that is not known exactly."""
+"""The bands of an answer: of one pair, and over what is not known exactly."""
 
 import numpy as np
 import pytest

@@ -54,3 +54,14 @@ def test_what_does_not_suit_is_refused_in_one_line(rollers, oil, argument, value
     with pytest.raises(LubeError) as caught:
         lube.plan(rollers, oil, **POINT, **given)
     assert str(caught.value).startswith(said) and "\n" not in str(caught.value)
+
+
+def test_a_threshold_is_checked_without_a_rig_too(rollers, oil):
+    with pytest.raises(LubeError, match=r"^threshold: got 'nonsense'"):
+        lube.plan(rollers, oil, **POINT, threshold="nonsense")
+
+
+def test_rollers_that_do_not_conduct_have_no_rig(oil):
+    glass = lube.Rollers(radius="50 mm", rms_roughness="0.2 um", resistivity="insulator")
+    with pytest.raises(LubeError, match=r"^rig: got 'mtm-ecr' with rollers that do not conduct"):
+        lube.plan(glass, oil, **POINT, realisations=2, rig="mtm-ecr")

@@ -83,7 +83,8 @@ def test_a_last_run_gives_its_time(tmp_path):
     for name, seconds in (("film", 20.0), ("trace", 100.0)):
         file = tmp_path / f"results/smoke/benchmarks/{name}.tsv"
         file.write_text(f"s\th:m:s\n{seconds}\t0\n", encoding="utf-8")
-    assert check_study(SMOKE)[0][-3].endswith("2 jobs took 2.0 min, one after the other")
+    said = next(line for line in check_study(SMOKE)[0] if line.startswith("last run"))
+    assert said.endswith("2 jobs took 2.0 min, one after the other")
 
 
 def test_changes_are_those_of_snakemake():
@@ -138,3 +139,15 @@ def test_a_list_without_usable_records_is_refused(tmp_path):
     assert check_study("mine.yaml")[1] == [
         "records.csv: no record can be used, need at least one usable record"
     ]
+
+
+def test_ranges_of_the_base_are_named_unless_they_are_replaced(tmp_path):
+    file, paper = tmp_path / "mine.yaml", CONFIG / "paper.yaml"
+    own = "uncertainty: {temperature: {range: +- 2 K}, force: null}"
+    file.write_text(f"based_on: {paper}\nname: mine\n{own}\n", encoding="utf-8")
+    remark = check_study(file)[0][-1]
+    assert remark.startswith(
+        f"Remark: uncertainty: {paper} gives the ranges and choices of viscosity"
+    )
+    assert "temperature" not in remark and "force" not in remark
+    assert "uncertainty" not in check_study(paper)[0][-1]

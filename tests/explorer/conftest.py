@@ -22,6 +22,7 @@ def with_assumptions():
         dataset = xr.Dataset(found, levels, film.attrs).map(
             lambda one: one.assign_attrs(attributes)
         )
+        dataset = dataset.assign_coords(factor=["viscosity"])
         return datasets | {"sensitivity": dataset.assign_attrs(film.attrs)}
 
     return added

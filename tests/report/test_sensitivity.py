@@ -19,6 +19,9 @@ def dataset(**changes):
         "range_of_factor": ("factor", ["-1 K to 1 K", "line, surface", "any"]),
         "source_of_factor": ("factor", ["assumed", "the model", "the study's seed"]),
     }
+    for name in ("elementary_effect", "first_order"):
+        dims_, values = table[name]
+        table |= {f"{name}_lower": (dims_, values - 0.01), f"{name}_upper": (dims_, values + 0.01)}
     for end, times in (("median", 1.0), ("lower", 0.1), ("upper", 2.0)):
         values = (probability * times).reshape(1, 1, 1, 3)
         table[f"breakthrough_probability_{end}"] = dims, values
@@ -51,6 +54,32 @@ def test_points_without_a_film_are_left_out():
 
 def test_what_to_measure_first_is_said_with_what_it_gains():
     last = rests_on(dataset()).strip().splitlines()[-1]
-    assert "the temperature at 400 N, 85.71 r/min, 40 °C, by 30 %" in last
-    assert "the temperature at 100 N, 85.71 r/min, 40 °C, by 10 %" in last
+    assert "the temperature at 400 N, 85.71 r/min, 40 °C, by 26.4 %" in last
+    assert "the temperature at 100 N, 85.71 r/min, 40 °C, by 8.95 %" in last
     assert "contact model" not in last
+
+
+def test_noise_is_no_finding():
+    found = dataset()
+    for name in ("elementary_effect", "first_order"):
+        is_noise = (found["force"] < 300.0) & (found["factor"] == "temperature")
+        found[f"{name}_lower"] = found[f"{name}_lower"].where(~is_noise, 0.0)
+    lines = rests_on(found).strip().splitlines()
+    assert "| temperature | -1 K to 1 K | assumed | 4 | – | – |" in lines
+    assert lines[-1].endswith("the temperature at 400 N, 85.71 r/min, 40 °C, by 26.4 %.")
+
+
+def test_each_contact_model_and_records_without_interval_are_said():
+    records = xr.Dataset(
+        {
+            "band_needed": (("contact_model", "record"), [["mean", "pair"], ["none", ""]]),
+            "measured_share_lower": ("record", [0.1, np.nan]),
+        },
+        {"contact_model": ["line", "surface"], "origin": "measured"},
+    )
+    lines = rests_on(dataset(), records).strip().splitlines()
+    assert lines[-5].startswith(
+        "Of 2 measured records by contact of the line: 1 within the interval"
+    )
+    assert "the surface: 1 in none of the bands; 1 not judged" in lines[-3]
+    assert lines[-1] == "1 of them have no interval: they are taken as exact."

@@ -47,6 +47,8 @@ def sensitivity(files):
             "log_probability_deviation": (POINT_DIMS, np.full(sizes, 0.4)),
             "group_first_order": (("factor_group", *POINT_DIMS), parts),
             "first_order": (("factor", *POINT_DIMS), parts),
+            "first_order_lower": (("factor", *POINT_DIMS), parts - 0.01),
+            "first_order_upper": (("factor", *POINT_DIMS), parts + 0.01),
             "group_of_factor": ("factor", groups),
         },
         levels | {"factor_group": groups, "factor": factors},
@@ -91,8 +93,8 @@ def test_records_longer_than_a_revolution_tell_no_more(found):
 def test_the_quantity_with_the_largest_part_is_to_be_measured_first(found):
     narrowing = found["narrowing"].mean(POINT_DIMS)
     assert narrowing["factor"].values.tolist() == ["viscosity", "first_rms_roughness"]
-    # Two thirds of what the quantities do.
-    assert narrowing[1] == pytest.approx(1.0 - np.sqrt(1.0 / 3.0), rel=1e-4)
+    # Half of the variance, of which a tenth is left.
+    assert narrowing[1] == pytest.approx(1.0 - np.sqrt(0.55), rel=1e-4)
     assert found["accuracy_of_factor"].values.tolist() == ["+- 3 %", "+- 9 %"]
 
 
@@ -104,6 +106,15 @@ def test_tables_have_the_best_records_first(found):
     best = found["half_width"].sel(quantity="film thickness", turns=1.0).min().item()
     assert f"± {100 * best:.3g} %" in first
     assert "| first rms roughness | -29 % to 25 % | +- 9 % |" in text
+
+
+def test_what_is_not_above_the_noise_is_not_to_be_measured(found, sensitivity, study, files):
+    noisy = sensitivity["first_order"] - 0.25 * (sensitivity["factor"] != "first_rms_roughness")
+    inputs = files | {"sensitivity": sensitivity.assign(first_order_lower=noisy)}
+    narrowing = plan.make(study, inputs, 2)["narrowing"]
+    assert (narrowing.sel(factor="viscosity") == 0.0).all()
+    assert (narrowing.sel(factor="first_rms_roughness") > 0.0).all()
+    assert "| viscosity |" not in tables(found.assign(narrowing=narrowing))
 
 
 def test_the_best_threshold_is_one_of_the_studys_and_read_best(study, files, found):

@@ -162,6 +162,7 @@ def test_surrogates_miss_runs_that_they_have_not_seen_by_little(result):
     assert (result["relative_surrogate_error"] < 0.15).all()
     assert result["film_surrogate_error"] < 0.005
     assert result["run_count"].values.tolist() == [128, 128]
+    assert result["left_out_count"].values.tolist() == [32, 32]
 
 
 def test_each_sample_has_the_model_film_and_random_numbers_that_it_chooses(study, direct):

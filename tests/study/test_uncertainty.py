@@ -122,7 +122,7 @@ def test_a_range_needs_a_source(tmp_path):
             },
             "but n-dodecane states the definition of its coefficient",
         ),
-        ({"load_sharing": "iterated"}, "load_sharing iterated, need load_sharing none"),
+        ({"load_sharing": "iterated"}, "load_sharing: got iterated, need none: probabilities of"),
     ],
 )
 def test_ranges_for_which_the_model_has_no_answer_are_refused(tmp_path, section, said):

@@ -179,11 +179,21 @@ function showAnswers(point) {
     element("regime").textContent = content.regimes[at("regime", point)].replace("_", ", ");
 }
 
-// What one pair of rollers may show, and what the assumptions allow; of lines, in a revolution
+// The assumptions are nearest to pure rolling, by the study's first contact model and film formula if
+// these are not among what is open
+const rolling = Math.max(levels.slide_to_roll_ratio.values.indexOf(0), 0);
+const isAssumed = (point) =>
+    point.slide_to_roll_ratio === rolling && ["contact_model", "film_formula"].every((name) => !point[name] || content.factors.includes(name));
+
+// What one pair of lines may show in a revolution, and what means over pairs the assumptions allow
 function bands(point) {
-    const words = { breakthrough_probability_pair: "one pair, 95 %: ", "sensitivity.breakthrough_probability": "assumptions, 5 to 95 %: " };
-    const texts = Object.entries(words).map(([name, text]) => {
-        if (!(`${name}_lower` in variables) || (isSurface(point) && name.endsWith("pair"))) return "";
+    const both = content.factors.includes("contact_model") ? " of lines and surfaces" : "";
+    const words = {
+        breakthrough_probability_pair: ["one pair, 95 %: ", !isSurface(point)],
+        "sensitivity.breakthrough_probability": [`assumptions, 5 to 95 % of means${both}: `, isAssumed(point)],
+    };
+    const texts = Object.entries(words).map(([name, [text, isKnown]]) => {
+        if (!isKnown || !(`${name}_lower` in variables)) return "";
         const { mean: lower, lower: upper } = limits(name, ["_lower", "_upper"], point);
         return lower === null ? "" : `${text}${percent(lower)} to ${percent(upper)}`;
     });
