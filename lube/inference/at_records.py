@@ -112,7 +112,7 @@ def film_at_records(
     xarray.Dataset
         Variables of `lube.grid.films.film_at` over film_formula and record, and
         ``dynamic_viscosity``; with a meniscus also its distance, with inlet shear heating its
-        factor.
+        factor, with load sharing the asperities' share.
     """
     force, speed, temperature, oil, slip = (
         xr.DataArray(experiment[name].values, dims="record")
@@ -125,6 +125,8 @@ def film_at_records(
     table["dynamic_viscosity"] = properties["dynamic_viscosity"]
     if film_model.get("inlet_shear_heating", "none") == "none":
         del table["inlet_shear_heating_factor"]
+    if film_model.get("load_sharing", "none") == "none":
+        table = table.drop_vars("surface_load_share", errors="ignore")
     if film_model.get("inlet_meniscus") is not None:
         table["inlet_meniscus"] = film_model["inlet_meniscus"]
     return table.transpose("film_formula", "record", ...)

@@ -160,11 +160,16 @@ def study_strength(contact: Data) -> float:
 def _lambda_ratios(comparison, factor):
     """Lambda ratios with the pressure-viscosity coefficient multiplied by a factor.
 
-    Starvation depends on the film, but inlet shear heating does not depend on the coefficient.
+    Starvation depends on the film, but inlet shear heating does not depend on the coefficient. The
+    load that asperities carry stays that of the study's coefficient.
     """
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         groups, names = FilmGroups.of(comparison), comparison["film_formula"]
-        films = [_films(formula(name), groups, factor) for name in names.values]
+        oil = 1.0 - comparison.get("surface_load_share", xr.zeros_like(comparison["lambda_ratio"]))
+        films = [
+            _films(formula(name), replace(groups, load=groups.load * part), factor)
+            for name, part in zip(names.values, oil, strict=True)
+        ]
         scale = comparison["reduced_radius"] / comparison["composite_rms_roughness"]
         scale = scale * comparison.get("inlet_shear_heating_factor", 1.0)
         return xr.concat(films, names, join="exact") * scale

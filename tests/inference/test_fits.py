@@ -32,3 +32,15 @@ def test_with_the_studys_coefficient_the_films_are_those_of_the_records(study, c
         starved = starvation_factor(flooded * 0.5**0.470 * scale, 0.4e-3 / width)
         expected = expected * starved
     np.testing.assert_allclose(half.sel(film_formula="paper"), expected, rtol=1e-9)
+
+
+def test_the_load_that_asperities_carry_stays_that_of_the_studys_coefficient(study, make_spec):
+    experiment = experiment_of([0.1, 0.2], [800.0, 1600.0], [100.0, 100.0], [60.0, 80.0])
+    oil = lubricant_table(study.lubricants, [60.0, 80.0])
+    known = experiment, oil, study.rollers, FORMULAS
+    sharing = {"rough_surfaces": make_spec(20_000), "load_sharing": "iterated"}
+    shared, alone = film_at_records(*known, **sharing), film_at_records(*known)
+    factor = xr.DataArray([1.0], dims="factor")
+    found = _lambda_ratios(shared, factor).isel(factor=0)
+    np.testing.assert_allclose(found, shared["lambda_ratio"], rtol=1e-4)
+    assert (shared["lambda_ratio"] / alone["lambda_ratio"]).max() > 1.015
