@@ -88,7 +88,7 @@ class Study(StrictModel):
     roughness_deformation: Literal["none", "computed", "venner-1997"] = "none"
     """none, as in the paper; computed, the oil deforms each wave of the roughness by the linear
     response of Reynolds' equation about the computed film; or venner-1997, the oil flattens long
-    waves by the formula of Venner et al., for pure rolling and high loads
+    waves by the formula of Venner et al., for pure rolling and Moes' load numbers above 20
     """
     contact_model: tuple[Literal[CONTACT_MODELS], ...] = Field(("line",), min_length=1)
     """line, as in the paper; surface, the rough surface that the line stands for, over the length
