@@ -35,8 +35,8 @@ COMPLETE: Model = {
 }
 """The most complete model of this package: film, its shape and its response to the roughness by
 Reynolds' equation, and contact of the rollers' surfaces over their length. Answers for a notebook
-leave out heating at the inlet and starvation; the oil carries the whole load, unless ``load_sharing``
-says otherwise."""
+leave out heating at the inlet and starvation; the oil carries the whole load, unless the argument
+``load_sharing`` says otherwise."""
 REALISATIONS = 64
 SEED = 1
 
