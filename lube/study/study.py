@@ -282,7 +282,7 @@ class Study(StrictModel):
         drawn = math.ceil(self.rig.revolutions) if self.rig.drift > 0.0 else 1
         return range(RIG_REALISATIONS, RIG_REALISATIONS + self.rig.pairs * drawn)
 
-    def check_window(self, force: float) -> None:
+    def check_window(self, force: float, key: str = "operating_grid.force") -> None:
         """Refuse a force whose contact is finer than the grid or wider than a roller's perimeter.
 
         A force whose contact extends to the meniscus of the oil is refused, too.
@@ -291,6 +291,8 @@ class Study(StrictModel):
         ----------
         force : float
             Normal force, N.
+        key : str, optional
+            Where the study gives it.
 
         Raises
         ------
@@ -298,7 +300,7 @@ class Study(StrictModel):
             With the contact width, and what is needed.
         """
         half_width = self.rollers.contact_half_width(force)
-        what = f"operating_grid.force: the contact at {force:g} N"
+        what = f"{key}: the contact at {force:g} N"
         self.line_spec.check_width(2.0 * half_width, what)
         meniscus = self.inlet_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:

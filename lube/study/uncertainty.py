@@ -41,7 +41,7 @@ def _range(units, example, **limits):
     needed = f"range such as {example}"
 
     def parse(value):
-        match = re.fullmatch(r"\s*(?:\+-\s*(\S.*)|(\S.*?)\s+to\s+(\S.*))", str(value))
+        match = re.fullmatch(r"\s*(?:\+-\s*([^\s+-].*)|(\S.*?)\s+to\s+(\S.*))", str(value))
         if match is None or (match[1] and not units):
             raise LubeError(f"got {shown(value)}, need a {needed}")
         ends = [f"-{match[1]}", match[1]] if match[1] else [match[2], match[3]]
@@ -331,6 +331,10 @@ def check_uncertainty(study) -> None:
         raise StudyError("got none, need an uncertain quantity or choice")
     if uncertain.temperature:
         _check_temperatures(study, uncertain.temperature.range)
+    if uncertain.force:
+        lower, upper = uncertain.force.range
+        study.check_window(min(study.operating_grid.force) * (1.0 + lower), "force.range")
+        study.check_window(max(study.operating_grid.force) * (1.0 + upper), "force.range")
     if uncertain.hurst_exponent and not all(line.hurst_exponent for line in spec.lines):
         raise StudyError(
             "hurst_exponent: got a range for lines with a measured spectrum, on which nothing "
