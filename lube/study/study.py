@@ -35,7 +35,7 @@ from lube.types import File
 from lube.units import with_unit
 
 CONTACT_MODELS = "line", "surface"
-"""What touches: two roughness lines, or the surfaces that they stand for."""
+"""Contact of two roughness lines, or of the surfaces that they stand for."""
 
 
 class Study(StrictModel):
