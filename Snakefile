@@ -81,7 +81,7 @@ rule electrical:
 
 
 rule measurement_plan:
-    """What to measure next."""
+    """What to measure next, by the sensitivity study, which is made first."""
     input:
         products(made_by("measurement_plan", FIGURES)),
     message:

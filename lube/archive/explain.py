@@ -30,8 +30,9 @@ from lube.types import File
 _CORRECTIONS = {
     "inlet_meniscus": "starvation_factor",
     "inlet_shear_heating": "inlet_shear_heating_factor",
+    "load_sharing": "surface_load_share",
 }
-"""Values of a study that may reduce the film, each with the factor by which they do."""
+"""Values of a study that may change the film, each with the variable that says how much."""
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,9 @@ COMPLETE: Model = {
     "contact_model": "surface",
 }
 """The most complete model of this package: film, its shape and its response to the roughness by
-Reynolds' equation, and contact of the rollers' surfaces over their length. The oil carries the
-whole load."""
+Reynolds' equation, and contact of the rollers' surfaces over their length. Answers for a notebook
+leave out heating at the inlet and starvation; the oil carries the whole load, unless the argument
+``load_sharing`` says otherwise."""
 REALISATIONS = 64
 SEED = 1
 

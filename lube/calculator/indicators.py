@@ -26,8 +26,8 @@ def indicators(
 ) -> Answer:
     """Find indicators of lubrication by their published formulas, and the rolling resistance.
 
-    They stand beside the probability of contact, and none of them is one. The load share of
-    asperities is a share of load, not of time.
+    None of them is a probability of contact: the load share of asperities is a share of load, not
+    of time.
 
     Parameters
     ----------

@@ -206,7 +206,7 @@ def contact_probability(
     roughness_deformation : str, optional
         ``"none"``; ``"computed"``: the oil deforms each wave of the roughness by Reynolds'
         equation, which takes some seconds for each operating point; or ``"venner-1997"``: it
-        flattens long waves of lines by a formula.
+        flattens long waves of lines by a formula for Moes' load numbers above 20.
     load_sharing : str, optional
         ``"none"``, the oil carries the whole load; or ``"iterated"``, the asperities of the
         rollers' surfaces carry a share of it, and the film is that of the rest.

@@ -137,9 +137,13 @@ LOAD_SHARES = {
 
 
 def _biboulet(load, speed, material):
-    moes_load = load / np.sqrt(speed)
+    """Resistance for Moes' numbers M from 0.2 to 200 and L from 4 to 16."""
+    moes_load, moes_material = load / np.sqrt(speed), material * speed**0.25
     joined = (1.0 + (1.4 / 1.45 * np.sqrt(moes_load)) ** 10) ** 0.1
-    return load**1.5 * 1.4 / (moes_load * joined)
+    of_load = (moes_load >= 0.2) & (moes_load <= 200.0)
+    of_material = (moes_material >= 4.0) & (moes_material <= 16.0)
+    resistance = load**1.5 * 1.4 / (moes_load * joined)
+    return np.where(of_load & of_material, resistance, np.nan)[()]
 
 
 def _powers(factor, of_speed, of_load, of_material, load, speed, material):
@@ -173,7 +177,7 @@ def rolling_resistance(name: str, load: Values, speed: Values, material: Values)
     Returns
     -------
     float or numpy.ndarray
-        Force per length over E' R*.
+        Force per length over E' R*; NaN outside the published range of the formula.
 
     References
     ----------

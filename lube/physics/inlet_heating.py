@@ -182,6 +182,9 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
 
     Notes
     -----
+    It is for a Barus oil between rollers that are flattened as by Hertz, and cannot hold at rigid,
+    isoviscous points.
+
     With the reduced pressure q = 1 - exp(-alpha p), from 0 to 1, and y = (1 - q)^(1/10)
 
     .. math::

@@ -5,10 +5,11 @@ import hashlib
 import json
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from lube.errors import LubeError, located
+from lube.pipeline.figure_list import Figure
 from lube.schema import STAGES
 from lube.study.resolve import study_files
 from lube.study.study import Study
@@ -210,22 +211,43 @@ class StudyFiles:
         return {step: [self.result(file(job)) for job in jobs] for step, jobs in steps.items()}
 
     @one_line_errors()
-    def check_targets(self, targets: Iterable[str]) -> None:
+    def check_targets(self, targets: Iterable[str], figures: Mapping[str, Figure]) -> None:
         """End Snakemake with one line if it is asked for something that the study lacks.
 
         Parameters
         ----------
         targets : iterable of str
             Words of the command, among them rules such as ``areal_contact``, or files.
+        figures : dict of str to Figure
+            The study's figures by name.
         """
         for target in targets:
-            for stage, row in STAGES.items():
-                names = stage, self.result(f"{stage}.nc"), row.target
-                if os.path.normpath(target) in names and not self.study.has(stage):
+            asked = self._stages_of(target, figures)
+            for stage in asked:
+                if not self.study.has(stage):
                     self._check_stage(target, stage)
-                elif target in names and row.target == "sensitivity":
-                    with located(f"{self.path}: uncertainty"):
-                        check_uncertainty(self.study)
+            made = {*asked}.union(*map(self.study.forerunners, asked))
+            if any(
+                "uncertainty" in STAGES[stage].only_with for stage in made if self.study.has(stage)
+            ):
+                with located(f"{self.path}: uncertainty"):
+                    check_uncertainty(self.study)
+
+    def _stages_of(self, target, figures):
+        """List the stages whose files a target names, or draws."""
+        path = os.path.normpath(target)
+        drawn = {
+            kind
+            for name, figure in figures.items()
+            if path in self.products([name])
+            for kind in figure.datasets
+        }
+        return [
+            name
+            for name, row in STAGES.items()
+            if path in (row.rule, row.target, self.result(f"{name}.nc"), *self.batches_of(name))
+            or name in drawn
+        ]
 
     def _check_stage(self, target, stage):
         """Refuse a file, or a target that makes no other file."""

@@ -302,7 +302,7 @@ _ROWS = (
     ),
     Stage(
         "indicators",
-        "published indicators of lubrication, beside the computed film",
+        "published indicators of lubrication, compared with the computed film",
         inputs=("lubricant", "film", "film_profile"),
         values=_named("rollers.length rough_rollers.mean_ra_roughness"),
         target="computed",

@@ -133,7 +133,7 @@ def _of_lines(table):
 
 
 def _of_surfaces(table, surfaces):
-    """As `_of_lines`, of surfaces."""
+    """Probability with its limits, and prediction interval, of sampled surfaces."""
     limits = [surfaces[f"breakthrough_probability{limit}"].values for limit in LIMITS]
     noise = np.hypot(table["share_error"].values, 0.25 * (limits[2] - limits[1]))
     size, ratio = surfaces["sample_size"].values, surfaces["scatter_ratio"].values

@@ -44,7 +44,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty unless the lines
         are flattened by a formula or not Gaussian; then it says so, and all values are NaN. In
-        uneven windows and on surfaces the share of pairs with a breakthrough and the time to the
+        uneven windows and on surfaces the fraction of pairs with a breakthrough and the time to the
         first one are estimated from the probability and the duration of a breakthrough. The theory
         for high films holds for lines as drawn.
 
@@ -69,7 +69,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     In pure rolling, equal rollers repeat themselves. Groups of breakthroughs a longest wavelength
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
-    share of pairs with any is :math:`1 - e^{-\mu}`.
+    fraction of pairs with any is :math:`1 - e^{-\mu}`.
     """
     film = inputs["film"].transpose("film_formula", *POINT_DIMS, ...)
     remark = _why_not(study.line_spec, study.gap)
@@ -133,7 +133,7 @@ def _on_surfaces(study, speed, areal):
 
 
 def _by_groups(found, passages, revolution):
-    r"""Share of pairs with a breakthrough in a revolution, and time to the first, estimated.
+    r"""Fraction of pairs with a breakthrough in a revolution, and time to the first, estimated.
 
     Groups of breakthroughs come independently of one another: of those that a revolution has,
     :math:`-\ln(1 - P)` are in the window on average, each for the time of one passage or, in an
@@ -294,7 +294,7 @@ def _in_pure_rolling(values):
 
 
 def _in_a_revolution(spec, film, runs, breakthrough):
-    """Share of pairs with a breakthrough in a revolution of pure rolling, and time to the first."""
+    """Fraction of pairs with a breakthrough in a revolution of rolling, and time to the first."""
     points = spec.points[0]
     width = 2.0 * film["contact_half_width"]
     windows = independent_windows(points * spec.spacing, width, spec.longest_wavelength)
@@ -330,7 +330,7 @@ def _sampled(spec, film, windows, slips, seed, pairs, threads=None):
 
 
 def _touching_pairs(groups, breakthrough, windows):
-    """Share of pairs with a breakthrough in a revolution, and its limits.
+    """Fraction of pairs with a breakthrough in a revolution, and its limits.
 
     Groups of breakthroughs come independently of one another. Where contact is so frequent that
     hardly any group ends, they are fewer than the independent windows with a breakthrough, which

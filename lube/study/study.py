@@ -35,7 +35,7 @@ from lube.types import File
 from lube.units import with_unit
 
 CONTACT_MODELS = "line", "surface"
-"""What touches: two roughness lines, or the surfaces that they stand for."""
+"""Contact of two roughness lines, or of the surfaces that they stand for."""
 
 
 class Study(StrictModel):
@@ -88,7 +88,7 @@ class Study(StrictModel):
     roughness_deformation: Literal["none", "computed", "venner-1997"] = "none"
     """none, as in the paper; computed, the oil deforms each wave of the roughness by the linear
     response of Reynolds' equation about the computed film; or venner-1997, the oil flattens long
-    waves by the formula of Venner et al., for pure rolling and high loads
+    waves by the formula of Venner et al., for pure rolling and Moes' load numbers above 20
     """
     contact_model: tuple[Literal[CONTACT_MODELS], ...] = Field(("line",), min_length=1)
     """line, as in the paper; surface, the rough surface that the line stands for, over the length
@@ -282,7 +282,7 @@ class Study(StrictModel):
         drawn = math.ceil(self.rig.revolutions) if self.rig.drift > 0.0 else 1
         return range(RIG_REALISATIONS, RIG_REALISATIONS + self.rig.pairs * drawn)
 
-    def check_window(self, force: float) -> None:
+    def check_window(self, force: float, key: str = "operating_grid.force") -> None:
         """Refuse a force whose contact is finer than the grid or wider than a roller's perimeter.
 
         A force whose contact extends to the meniscus of the oil is refused, too.
@@ -291,6 +291,8 @@ class Study(StrictModel):
         ----------
         force : float
             Normal force, N.
+        key : str, optional
+            Where the study gives it.
 
         Raises
         ------
@@ -298,7 +300,7 @@ class Study(StrictModel):
             With the contact width, and what is needed.
         """
         half_width = self.rollers.contact_half_width(force)
-        what = f"operating_grid.force: the contact at {force:g} N"
+        what = f"{key}: the contact at {force:g} N"
         self.line_spec.check_width(2.0 * half_width, what)
         meniscus = self.inlet_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:

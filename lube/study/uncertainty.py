@@ -41,7 +41,7 @@ def _range(units, example, **limits):
     needed = f"range such as {example}"
 
     def parse(value):
-        match = re.fullmatch(r"\s*(?:\+-\s*(\S.*)|(\S.*?)\s+to\s+(\S.*))", str(value))
+        match = re.fullmatch(r"\s*(?:\+-\s*([^\s+-].*)|(\S.*?)\s+to\s+(\S.*))", str(value))
         if match is None or (match[1] and not units):
             raise LubeError(f"got {shown(value)}, need a {needed}")
         ends = [f"-{match[1]}", match[1]] if match[1] else [match[2], match[3]]
@@ -60,7 +60,9 @@ class _Uncertain(StrictModel):
     _SCALE: ClassVar[float] = 1.0
 
     distribution: Literal["uniform", "normal"] = "uniform"
-    """uniform over the range, or normal, with 95 % of it in the range"""
+    """uniform over the range, or normal, with 95 % of it in the range, cut off at 1.5 times the
+    half-width of the range from its middle
+    """
     source: Text
     """where the range comes from, or `assumed`"""
 
@@ -170,7 +172,7 @@ class OfDeformation(Choice[Literal["none", "computed"]]):
 
 
 class OfContact(Choice[Literal["line", "surface"]]):
-    """What touches."""
+    """Contact of lines or of surfaces."""
 
 
 @dataclass(frozen=True)
@@ -215,7 +217,7 @@ def _of(group):
 
 
 class Uncertainty(StrictModel):
-    """What the study does not know exactly, and on what its answer therefore rests."""
+    """Quantities and choices of the model that a study does not know exactly."""
 
     viscosity: Relative | None = _of("oil")
     """viscosity of the oils"""
@@ -260,7 +262,7 @@ class Uncertainty(StrictModel):
     roughness_deformation: OfDeformation | None = _of("film")
     """deformation of the roughness"""
     contact_model: OfContact | None = _of("contact model")
-    """what touches"""
+    """contact of the line, or of the surface that it stands for"""
 
     def factors(self) -> list[Factor]:
         """Return all factors that are given, in the order of the keys above."""
@@ -334,6 +336,10 @@ def check_uncertainty(study) -> None:
         raise StudyError("got none, need an uncertain quantity or choice")
     if uncertain.temperature:
         _check_temperatures(study, uncertain.temperature.range)
+    if uncertain.force:
+        lower, upper = uncertain.force.range
+        study.check_window(min(study.operating_grid.force) * (1.0 + lower), "force.range")
+        study.check_window(max(study.operating_grid.force) * (1.0 + upper), "force.range")
     if uncertain.hurst_exponent and not all(line.hurst_exponent for line in spec.lines):
         raise StudyError(
             "hurst_exponent: got a range for lines with a measured spectrum, on which nothing "

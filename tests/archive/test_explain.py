@@ -23,7 +23,11 @@ POINT = {"force": 1600.0, "speed": 100.0, "temperature": 80.0}
 REALISATIONS = 9  # from eight on, NumPy sums pairwise
 
 
-CORRECTED = {"inlet_shear_heating": "zhu-cheng-1988", "inlet_meniscus": 0.4e-3}
+CORRECTED = {
+    "inlet_shear_heating": "zhu-cheng-1988",
+    "inlet_meniscus": 0.4e-3,
+    "load_sharing": "iterated",
+}
 
 
 @pytest.fixture(scope="module")
@@ -154,13 +158,18 @@ def test_an_explanation_states_what_determines_a_number(folder, study):
 
 
 def test_a_corrected_film_is_explained_by_its_factors(study, tmp_path):
-    path = results(study.model_copy(update=CORRECTED), tmp_path) / "contact.nc"
+    lay = study.roughness.model_copy(update={"lay_ratio": 4.0, "lay_angle": 90.0})
+    study = study.model_copy(update=CORRECTED | {"roughness": lay})
+    path = results(study, tmp_path) / "contact.nc"
     result = explain(path, None, slide_to_roll_ratio=0.1, **POINT)
     assert result.differing == []
     words = in_words(result)
     for stated in (
         "film thickness relative to a flooded contact",
         "relative to that without inlet shear",
+        "share of the load that the asperities of both surfaces carry",
+        "length over width and angle to rolling",
+        "4.0 and 90.0 deg",
     ):
         assert stated in words
 

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from lube.ehl.line_contact import LineContact, solve
+from lube.ehl.response import WaveResponse
 from lube.physics.flattening import amplitude_ratio
 
 
@@ -34,3 +36,25 @@ def test_values_of_the_source(wavelength):
     formula, computed = TABLE[wavelength]
     assert amplitude_ratio(wavelength, 100.0, 11.0) == pytest.approx(formula, abs=6e-4)
     assert amplitude_ratio(wavelength, 100.0, 11.0) == pytest.approx(computed, abs=0.04)
+
+
+@pytest.mark.parametrize(
+    ("load", "deviations"),
+    [
+        (5.0, (-0.16, -0.09)),
+        (10.0, (-0.14, -0.13)),
+        (20.0, (-0.06, -0.14)),
+        (40.0, (0.03, -0.07)),
+        (100.0, (0.06, 0.04)),
+    ],
+)
+def test_only_at_high_loads_it_agrees_with_reynolds_equation(load, deviations):
+    """At L = 11, for waves of one and half the half-width, as the documentation says."""
+    material = 2e-8 * 2.308e11
+    speed = 0.5 * (11.0 / material) ** 4
+    contact = LineContact(load * np.sqrt(2.0 * speed), speed, material, 0.1, 2.308e11)
+    profile = solve(contact)
+    for wavelength, deviation in zip((1.0, 0.5), deviations, strict=True):
+        solved = abs(WaveResponse(profile, wavelength).transfer(1.0, np.zeros(1)).item())
+        by_formula = amplitude_ratio(wavelength, load, 11.0)
+        assert by_formula / solved - 1.0 == pytest.approx(deviation, abs=0.008)

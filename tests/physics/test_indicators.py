@@ -62,11 +62,21 @@ def test_rolling_resistances_as_their_authors_print_them():
     assert rolling_resistance("zhou-hoeprich-1991", *groups) == pytest.approx(zhou, rel=2e-3)
     assert rolling_resistance("goksem-hargreaves", *groups) == pytest.approx(goksem, rel=2e-3)
     doubled = 2.0 * speed
-    for moes_load in (1e-3, 1e4):
+    for moes_load in (0.201, 199.0):
         load = moes_load * np.sqrt(doubled)
         limit = 1.4 * np.sqrt(doubled * load) if moes_load < 1.0 else 1.45 * doubled**0.75
         found = rolling_resistance("biboulet-houpert-2010", load, speed, material)
-        assert found == pytest.approx(limit, rel=1e-6)
+        assert found == pytest.approx(limit, rel=3e-5)
+
+
+def test_the_resistance_of_biboulet_and_houpert_is_known_in_its_published_range_only():
+    """M from 0.2 to 200 and L from 4 to 16 (physics-beyond.md, 17)."""
+    load, material = np.array([0.19, 0.21, 199.0, 201.0]), np.array([3.9, 4.1, 15.9, 16.1])
+    speed = 2.5e-11
+    groups = load * np.sqrt(2.0 * speed), speed, material[:, None] / (2.0 * speed) ** 0.25
+    known = np.isfinite(rolling_resistance("biboulet-houpert-2010", *groups))
+    inside = np.array([False, True, True, False])
+    np.testing.assert_array_equal(known, inside & inside[:, None])
 
 
 @pytest.mark.parametrize("moes_load", [0.3, 2.0, 8.0])

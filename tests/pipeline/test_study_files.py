@@ -4,6 +4,7 @@ import pytest
 from studies import SMOKE
 from unlike_studies import STUDIES, write_study
 
+from lube.pipeline.figure_list import study_figures
 from lube.pipeline.study_files import StudyFiles, input_paths
 from lube.study.metadata import About
 from lube.study.study import load_study
@@ -17,17 +18,19 @@ def files(study):
 def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
     path = paper_with(("film_shape", "computed"), ("name", "mine"))
     files = StudyFiles(load_study(path), path, {})
-    files.check_targets(["computed", "-n", "areal_contact", "archive", "results/mine/contact.nc"])
+    files.check_targets(
+        ["computed", "-n", "areal_contact", "archive", "results/mine/contact.nc"], {}
+    )
     for target in ("areal_gauge", "master", "./results/mine/master.nc"):
         with pytest.raises(SystemExit, match=f"got the target {target}, need .*film_shape: flat"):
-            files.check_targets(["--cores", "2", target])
+            files.check_targets(["--cores", "2", target], {})
     with pytest.raises(SystemExit, match="need a measured topography of a roller"):
-        files.check_targets(["results/mine/surface.nc"])
+        files.check_targets(["results/mine/surface.nc"], {})
     path = paper_with(("roughness_deformation", "venner-1997"), ("name", "mine"))
     files = StudyFiles(load_study(path), path, {})
     for target in ("areal_contact", "./results/mine/areal.nc"):
         with pytest.raises(SystemExit, match=f"got the target {target}, need .*tion: none"):
-            files.check_targets([target])
+            files.check_targets([target], {})
 
 
 def test_profiles_along_rolling_have_no_surface_to_press_or_to_count(tmp_path):
@@ -35,10 +38,22 @@ def test_profiles_along_rolling_have_no_surface_to_press_or_to_count(tmp_path):
     files = StudyFiles(load_study(path), path, {})
     for target in ("areal_contact", "patch_contact", "results/insulator/areal.nc"):
         with pytest.raises(SystemExit, match=f"the target {target}, need .*stand for surfaces"):
-            files.check_targets([target])
+            files.check_targets([target], {})
     for target in ("rig", "results/insulator/experiment.nc", "comparison", "gauge"):
         with pytest.raises(SystemExit, match=f"the target {target}, need .*that conduct"):
-            files.check_targets([target])
+            files.check_targets([target], {})
+
+
+def test_a_sensitivity_study_is_checked_with_all_that_it_is_made_for(paper_with):
+    path = paper_with(("load_sharing", "iterated"), ("name", "mine"))
+    study = load_study(path)
+    files, figures = StudyFiles(study, path, {}), study_figures(study)
+    files.check_targets(["archive", "computed", "electrical", "results/mine/film.nc"], figures)
+    results = "plan.nc", "figures/fig43_bands.png", "batches/sensitivity_runs_3.nc"
+    asked = "sensitivity", "measurement_plan", "record_bands", *map(files.result, results)
+    for target in asked:
+        with pytest.raises(SystemExit, match="uncertainty: got one with load_sharing iterated"):
+            files.check_targets(["--cores", "2", target], figures)
 
 
 def test_inputs_are_named_from_the_working_folder_each_once(tmp_path, monkeypatch):

@@ -25,6 +25,14 @@ def test_the_numbers_of_the_study_are_stated(study, datasets):
     assert "numpy 2" in made(study) and "The authors of lube" in made(study)
 
 
+def test_the_deformation_of_the_roughness_is_stated(study, datasets):
+    assert "the oil (`" not in facts(study, datasets["lubricant"])
+    for choice, words in (("venner-1997", "flattened"), ("computed", "deformed")):
+        deformed = study.model_copy(update={"roughness_deformation": choice})
+        text = facts(deformed, datasets["lubricant"])
+        assert f"in the contact {words} by the oil (`{choice}`" in text
+
+
 def test_two_oils_of_one_title_are_both_stated(study):
     (oil,) = study.lubricants
     oils = [oil, oil.model_copy(update={"name": "b"})]
@@ -160,6 +168,12 @@ def test_points_whose_surfaces_carry_much_of_the_load_are_counted(study, results
     text = findings(study, results | {"film": film.assign(surface_load_share=share)})
     assert "Asperities of the surfaces carry up to 30 % of the load, although the film" in text
     assert "more than 10 % at 4 of the 16 operating points" in text
+    assert "% of the load, although the film is that of the whole load.\n" in text  # of the line
+    shared = study.model_copy(update={"load_sharing": "iterated"})
+    text = findings(shared, results | {"film": film.assign(surface_load_share=share)})
+    assert "of the load; the films follow from the share that the surfaces carry" in text
+    assert "surfaces carry up to 30 % of the load, and the oil the rest" in text
+    assert "whole load" not in text
 
 
 def test_contact_of_surfaces_is_stated_beside_that_of_lines_or_alone(study, results):

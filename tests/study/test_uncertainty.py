@@ -61,6 +61,7 @@ def test_ranges_are_read_in_their_units(tmp_path):
     [
         ("force", {"range": "2 % to -2 %"} | SOURCE, "got '2 % to -2 %', need the lower end first"),
         ("force", {"range": "+- 2"} | SOURCE, "need a number of %"),
+        ("force", {"range": "+- -5 %"} | SOURCE, "got '+- -5 %', need a range such as +- 10 %"),
         ("force", {"range": "2 %"} | SOURCE, "got '2 %', need a range such as"),
         ("force", {"range": "-120 % to 0 %"} | SOURCE, "need a value above -1 and at most 10"),
         ("hurst_exponent", {"range": "0.5 to 1.5"} | SOURCE, "need a value above 0 and below 1"),
@@ -121,6 +122,17 @@ def test_a_range_needs_a_source(tmp_path):
                 },
             },
             "but n-dodecane states the definition of its coefficient",
+        ),
+        (
+            {"uncertainty": {"force": {"range": "-99.9999 % to 0 %"} | SOURCE}},
+            "force.range: the contact at 0.0001 N is 1.05e-07 m wide, need at least two grid",
+        ),
+        (
+            {
+                "inlet_meniscus": "0.22 mm",
+                "uncertainty": {"force": {"range": "+- 50 %"} | SOURCE},
+            },
+            "the half-width of the contact at 2400 N",
         ),
         ({"load_sharing": "iterated"}, "load_sharing: got iterated, need none: probabilities of"),
     ],

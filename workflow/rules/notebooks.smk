@@ -19,7 +19,7 @@ products = FILES.products
 
 if not IS_MODULE:
     # The targets are checked here because Snakemake reads them later.
-    FILES.check_targets(sys.argv[1:])
+    FILES.check_targets(sys.argv[1:], FIGURES)
 
 
 def in_report(path):
