@@ -284,11 +284,13 @@ def rms_along(
     rms, _ = sum_of_lines(spec, 1)
     bands = bands or [_bands(spec, roller, one, points) for roller, one in enumerate(answers)]
     nodes, shapes = _nodes_of(slice(0, points), before, answers, spec.spacing)
+
+    def added_by(roller):
+        power, _, filters = bands[roller]
+        return (np.abs(1.0 + shapes[roller] @ filters) ** 2 - 1.0) @ power
+
     with one_blas_thread():
-        added = sum(
-            (np.abs(1.0 + at @ filters) ** 2 - 1.0) @ power
-            for at, (power, _, filters) in zip(shapes, bands, strict=True)
-        )
+        added = sum(_of_both(added_by, spec, answers))
     return np.sqrt(1.0 + np.interp(np.arange(points), nodes, added) / rms**2)
 
 
@@ -321,32 +323,57 @@ def answered_windows(
     ratio = rms_along(spec, points, before, answers, bands)
     reach = math.ceil(spec.longest_wavelength / spec.spacing)
     last = (max(points, reach) >> shift) + 2
-    lags = np.arange(-last, last + 1) << shift
+    lags = np.arange(last + 1) << shift
     most = 1 + max(len(filters) for _, _, filters in bands)
-    covariances = np.zeros((2, lags.size, most, most))
+
+    def at_lags(roller):
+        power, by_point, filters = bands[roller]
+        both = np.concatenate([np.ones((1, power.size)), filters])
+        one, other = np.triu_indices(len(both))
+        products = power * both[one] * both[other].conj() / rms**2
+        phase = lags[:, None] * by_point
+        even, odd = np.cos(phase) @ products.real.T, np.sin(phase) @ products.imag.T
+        found = np.zeros((2 * last + 1, most, most))
+        # At the opposite lag the two lines change places.
+        for first, second, values in ((one, other, even - odd), (other, one, even + odd)):
+            found[last:, first, second] = values
+            found[last::-1, second, first] = values
+        found[:, 0, 0] = 0.0
+        return found
+
     with one_blas_thread():
-        for roller, (power, by_point, filters) in enumerate(bands):
-            moved = power * np.exp(1j * lags[:, None] * by_point)
-            both = np.concatenate([np.ones((1, power.size)), filters])
-            products = both[:, None] * both.conj()
-            found = moved @ products.reshape(-1, power.size).T
-            here = covariances[roller, :, : len(both), : len(both)]
-            here[:] = found.real.reshape(here.shape) / rms**2
-    covariances[:, :, 0, 0] = 0.0
+        covariances = np.stack(_of_both(at_lags, spec, answers))
 
     def under(film):
         _, part = likely_part(film, rms * ratio)
         nodes, shapes = _nodes_of(part, before, answers, spec.spacing)
-        at_once = np.zeros((nodes.size, nodes.size), np.float32)
+
+        def added_at_nodes(roller):
+            power, by_point, filters = bands[roller]
+            drawn = np.exp(1j * nodes[:, None] * by_point)
+            changed = (1.0 + shapes[roller] @ filters) * drawn
+            found = _covariance(changed, power) - _covariance(drawn, power)
+            return (found / rms**2).astype(np.float32)
+
         with one_blas_thread():
-            for at, (power, by_point, filters) in zip(shapes, bands, strict=True):
-                drawn = np.exp(1j * nodes[:, None] * by_point)
-                changed = (1.0 + at @ filters) * drawn
-                found = (changed * power) @ changed.conj().T - (drawn * power) @ drawn.conj().T
-                at_once += (found.real / rms**2).astype(np.float32)
+            at_once = sum(_of_both(added_at_nodes, spec, answers))
         return UnevenWindow(film[part], ratio[part], tuple(shapes), at_once, covariances, shift)
 
     return under
+
+
+def _of_both(function, spec, answers):
+    """Values of a function of the roller for both of them, found once if they are alike."""
+    first, second = spec.lines
+    alike = first == second and answers[0] is answers[1]
+    found = function(0)
+    return [found, found if alike else function(1)]
+
+
+def _covariance(waves, power):
+    """Covariance at nodes of waves with some powers: the real part of their products."""
+    each = waves.real, waves.imag
+    return sum((part * power) @ part.T for part in each)
 
 
 def _bands(spec, roller, answer, points):

@@ -117,20 +117,16 @@ def touching_runs_under(
         slide-to-roll ratio, over the breakthroughs.
     """
     sums = np.zeros(1 + len(speed_ratios))
-    reach = correlations[0].size // 2
-    lines = surfaces[0].line, surfaces[1].line
     answers = np.empty((2, 2, (film.size >> shift) + 2), np.float32)
     with_known = np.empty(covariances.shape[:3])
     for m in range(places.size):
         known = touching[0][m]
-        offset, centre = places[m] - known, reach - known
-        _correlate(with_known, surfaces, covariances, known, shift)
-        _answer(answers, surfaces, with_known, offset, known, 0, 0, shift)
-        own = lines[0][places[m]] + lines[1][places[m]] + _answers_at(answers, 0, known, shift)
-        rise = touching[1][m] - own
-        rise /= np.float32(1.0) + _answers_at(answers, 1, known, shift)
-        around = lines, offset, correlations, centre, rise, film, answers, shift
-        window = surfaces, with_known, known, factor
+        answered = surfaces, covariances, with_known, places[m] - known, known, answers, shift
+        with_known[..., 0] = answers[0, 0] = np.nan
+        own = surfaces[0].line[places[m]] + surfaces[1].line[places[m]]
+        rise = touching[1][m] - (own + _answers_at(answered, 0, known, 0, 0))
+        rise /= np.float32(1.0) + _answers_at(answered, 1, known, 0, 0)
+        around = answered, correlations, rise, film
         start, stop, total = _run_under(around, known, 0, 0)
         points = max(stop - start, 1)  # rounding may put the known point just below the film
         if not layer_breaks(points, total, factor):
@@ -140,19 +136,19 @@ def touching_runs_under(
             times = 1
             for stride in (-strides[s], strides[s]):
                 motion = m, stride, speed_ratios[s]
-                times += _times_broken(around, window, motion, start, stop)
+                times += _times_broken(around, motion, factor, start, stop)
             sums[1 + s] += 1.0 / (points * strides[s] * times)
     return sums
 
 
 @kernel
-def _times_broken(around, window, motion, start, stop):
+def _times_broken(around, motion, factor, start, stop):
     """Count the looks, before or after the present time step, at which a run breaks.
 
     The run is followed as long as any of its points touches, as either surface carries them on.
     """
-    (surfaces, with_known, known, factor), (now, stride, ratios) = window, motion
-    _, offset, _, _, _, film, answers, shift = around
+    (answered, _, _, film), (now, stride, ratios) = around, motion
+    answers = answered[5]
     times = first = second = step = 0
     while stop > start:
         step += stride
@@ -161,7 +157,7 @@ def _times_broken(around, window, motion, start, stop):
         point = start + min(moved_1 - first, moved_2 - second)
         end = stop + max(moved_1 - first, moved_2 - second)
         first, second = moved_1, moved_2
-        _answer(answers, surfaces, with_known, offset, known, first, second, shift)
+        answers[0, 0] = np.nan
         start, stop = film.size, 0
         broke = False
         while point < end:
@@ -175,70 +171,87 @@ def _times_broken(around, window, motion, start, stop):
 
 
 @kernel
-def _correlate(with_known, surfaces, covariances, known, shift):
-    """Fill in the covariance of the lines and filtered lines with the gap at a known point.
+def _correlate(answered, roller, row):
+    """Fill in the covariance of a line, and of its filtered lines, with the gap at the known point.
 
-    The indices are: roller, lag, line or filtered line.
+    At one lag; the indices are: roller, lag, line or filtered line.
     """
-    for roller in range(2):
-        shapes = surfaces[roller].shapes
-        node = known >> shift
-        part = (known - (node << shift)) / (1 << shift)
-        for lag in range(with_known.shape[1]):
-            for line in range(1 + shapes.shape[1]):
-                total = covariances[roller, lag, line, 0]
-                for m in range(shapes.shape[1]):
-                    here = (1.0 - part) * shapes[node, m] + part * shapes[node + 1, m]
-                    total += here * covariances[roller, lag, line, 1 + m]
-                with_known[roller, lag, line] = total
+    surfaces, covariances, with_known, _, known, _, shift = answered
+    shapes, of_roller = surfaces[roller].shapes, covariances[roller, row]
+    node = known >> shift
+    part = (known - (node << shift)) / (1 << shift)
+    for line in range(1 + shapes.shape[1]):
+        total = of_roller[line, 0]
+        for m in range(shapes.shape[1]):
+            here = (1.0 - part) * shapes[node, m] + part * shapes[node + 1, m]
+            total += here * of_roller[line, 1 + m]
+        with_known[roller, row, line] = total
 
 
 @kernel
-def _added(with_known, surface, node, lag, shift):
+def _added(answered, roller, node, lag):
     """Return what the oil adds to the covariance of a line at a node with a point a lag behind."""
-    row = (lag >> shift) + with_known.shape[0] // 2
-    if row < 0 or row + 1 >= with_known.shape[0]:
+    surfaces, _, with_known, _, _, _, shift = answered
+    row = (lag >> shift) + with_known.shape[1] // 2
+    if row < 0 or row + 1 >= with_known.shape[1]:
         return 0.0
+    for each in (row, row + 1):
+        if np.isnan(with_known[roller, each, 0]):
+            _correlate(answered, roller, each)
+    before, after = with_known[roller, row], with_known[roller, row + 1]
     part = (lag & ((1 << shift) - 1)) / (1 << shift)
-    total = (1.0 - part) * with_known[row, 0] + part * with_known[row + 1, 0]
-    for m in range(surface.shapes.shape[1]):
-        here = (1.0 - part) * with_known[row, 1 + m] + part * with_known[row + 1, 1 + m]
-        total += surface.shapes[node, m] * here
+    total = (1.0 - part) * before[0] + part * after[0]
+    shapes = surfaces[roller].shapes
+    for m in range(shapes.shape[1]):
+        here = (1.0 - part) * before[1 + m] + part * after[1 + m]
+        total += shapes[node, m] * here
     return total
 
 
 @kernel
-def _answer(answers, surfaces, with_known, offset, known, first, second, shift):
-    """Fill in the answers to each line, and what they add to its covariance with the known point.
+def _answer(answered, node, first, second):
+    """Fill in the answers to the lines at a node, and the covariance that they add.
 
-    Before the lines moved on by some points each, or after, if these are negative. The indices are:
-    answer or covariance, roller, node.
+    The covariance is that with the known point. The lines move on by some points each first, or
+    back if these are negative. The indices are: answer or covariance, roller, node.
     """
+    surfaces, _, _, offset, known, answers, shift = answered
     for roller, moved in enumerate((first, second)):
-        for node in range(answers.shape[2]):
-            surface, lag = surfaces[roller], (node << shift) - moved - known
-            answers[0, roller, node] = answer_at(surface, offset - moved, 1 << shift, node)
-            answers[1, roller, node] = _added(with_known[roller], surface, node, lag, shift)
+        lag = (node << shift) - moved - known
+        answers[0, roller, node] = answer_at(surfaces[roller], offset - moved, 1 << shift, node)
+        answers[1, roller, node] = _added(answered, roller, node, lag)
 
 
 @kernel
-def _answers_at(answers, kind, point, shift):
-    """Sum the answers to both lines (0), or what they add to the covariance (1), at a point."""
-    first = _between_nodes(answers[kind, 0], point, shift)
-    return first + _between_nodes(answers[kind, 1], point, shift)
+def _answers_at(answered, kind, point, first, second):
+    """Sum the answers to both lines (0), or what they add to the covariance (1), at a point.
+
+    Nodes are filled in when they are needed, for a run meets few of them.
+    """
+    answers, shift = answered[5], answered[6]
+    node = point >> shift
+    for each in (node, node + 1):
+        if np.isnan(answers[0, 0, each]):
+            _answer(answered, each, first, second)
+    of_first = _between_nodes(answers[kind, 0], point, shift)
+    return of_first + _between_nodes(answers[kind, 1], point, shift)
 
 
 @kernel
 def _overlap_under(around, point, first, second):
     """Overlap at a point of the window before the lines moved; negative where it is unknown."""
-    lines, offset, correlations, centre, rise, film, answers, shift = around
+    answered, correlations, rise, film = around
+    surfaces, offset, known_point = answered[0], answered[3], answered[4]
+    centre = correlations[0].size // 2 - known_point
     ahead, behind = point - max(first, second) + centre, point - min(first, second) + centre
     if point < 0 or point >= film.size or ahead < 0 or behind >= correlations[0].size:
         return np.float32(-1.0)
-    sum_of_both = lines[0][offset + point - first] + lines[1][offset + point - second]
+    one, other = offset + point - first, offset + point - second
+    sum_of_both = surfaces[0].line[one] + surfaces[1].line[other]
     known = correlations[0][centre + point - first] + correlations[1][centre + point - second]
-    known += _answers_at(answers, 1, point, shift)
-    return sum_of_both + _answers_at(answers, 0, point, shift) + known * rise - film[point]
+    known += _answers_at(answered, 1, point, first, second)
+    answer = _answers_at(answered, 0, point, first, second)
+    return sum_of_both + answer + known * rise - film[point]
 
 
 @kernel
