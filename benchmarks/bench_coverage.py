@@ -363,14 +363,15 @@ def records_on_file(study, table, film, folder):
     """Write the records of the simulated rig, and a manifest of them."""
     film = film.isel(film_formula=0)
     rows = [{name: [level] for name, level in levels.items()} for levels in levels_of(table)]
-    points = [operating_points(film.sel(row), 0.0)[0] for row in rows]
+    points = [operating_points(film.sel(row), 0.0) for row in rows]
+    points = xr.concat(points, "operating_point", data_vars="minimal", compat="override")
     rows = ["file,temperature [degC],speed [rpm],force [N],pair,origin"]
     parts = defaultdict(list)
     for pair, number, part in simulated_revolutions(study, points):
         parts[pair, number].append(part.voltage(study.rig))
         if len(parts[pair, number]) == math.ceil(study.rig.revolutions):
             _write(folder / f"{pair}_{number}.nc", parts.pop((pair, number)), study.rig)
-            level = [repr(points[number].levels[name]) for name in LEVELS]
+            level = [repr(points[name][number].item()) for name in LEVELS]
             rows.append(",".join([f"{pair}_{number}.nc", *level, f"{pair}", "simulated"]))
     (folder / "manifest.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     return folder / "manifest.csv"

@@ -268,15 +268,14 @@ def _write_records(study, manifest):
         voltages.setdefault(number, []).append(revolution.voltage(study.rig))
     rows = ["file,force [N],speed [rpm],temperature [degC]"]
     for number, parts in voltages.items():
-        point, name = (
-            points[number],
-            f"measurement-of-november-by-bench-two-{number:02d}.csv",
-        )
+        name = f"measurement-of-november-by-bench-two-{number:02d}.csv"
         voltage = np.concatenate(parts)
         times = np.arange(voltage.size) / study.rig.sampling_rate
         columns = np.column_stack([times, 1e3 * voltage])
         header = "time [s],voltage [mV]"
         np.savetxt(manifest.with_name(name), columns, "%.8g", ",", header=header, comments="")
-        conditions = (str(point.levels[level]) for level in ("force", "speed", "temperature"))
+        conditions = (
+            str(points[level][number].item()) for level in ("force", "speed", "temperature")
+        )
         rows.append(",".join([name, *conditions]))
     manifest.write_text("\n".join(rows), encoding="utf-8")

@@ -1,15 +1,18 @@
-"""Operating points as plain numbers, and the speeds of their surfaces."""
+"""Operating points as rows of the film table, and the speeds of their surfaces."""
 
+import logging
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from itertools import product
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
+from lube.errors import DataError
 from lube.grid.gap import Gap
 from lube.grid.levels import rolling
-from lube.schema import CONTACT_DIMS, EXPERIMENT_DIMS, OPERATING_DIMS
+from lube.schema import CONTACT_DIMS, EXPERIMENT_DIMS, OPERATING_DIMS, POINT_DIMS
+
+log = logging.getLogger(__name__)
 
 
 def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tuple[float, float]:
@@ -139,23 +142,7 @@ def known_films(film: xr.Dataset, gap: Gap) -> xr.DataArray:
     return known
 
 
-@dataclass(frozen=True)
-class OperatingPoint:
-    """An operating point, with its row of the film table.
-
-    Attributes
-    ----------
-    levels : dict of str to float or str
-        Levels of the operating variables, by the names of `lube.schema.EXPERIMENT_DIMS`.
-    row : xarray.Dataset
-        The film table at the point, without coordinates of the operating variables.
-    """
-
-    levels: dict[str, float | str]
-    row: xr.Dataset = field(compare=False, repr=False)
-
-
-def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[OperatingPoint]:
+def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> xr.Dataset:
     """List the operating points of a film table.
 
     Parameters
@@ -167,8 +154,9 @@ def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[Oper
 
     Returns
     -------
-    list of OperatingPoint
-        In the order of lubricant, temperature, speed and force; the force changes fastest.
+    xarray.Dataset
+        Over operating_point, in the order of lubricant, temperature, speed and force; the force
+        changes fastest.
 
     Examples
     --------
@@ -176,13 +164,45 @@ def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[Oper
     >>> levels = ["oil"], [40.0], [100.0], [200.0, 400.0]
     >>> films = {"film_thickness": (names, [[[[1.0e-6, 0.9e-6]]]])}
     >>> table = xr.Dataset(films, dict(zip(names, levels)))
-    >>> [point.levels["force"] for point in operating_points(table, 0.0)]
+    >>> operating_points(table, 0.0)["force"].values.tolist()
     [200.0, 400.0]
     """
-    names, points = EXPERIMENT_DIMS[1:], []
-    table = at_slip(table, slide_to_roll_ratio)
-    for values in product(*(table[name].values.tolist() for name in names)):
-        levels = dict(zip(names, values, strict=True))
-        row = table.sel(levels).reset_coords(drop=True)
-        points.append(OperatingPoint({EXPERIMENT_DIMS[0]: slide_to_roll_ratio} | levels, row))
-    return points
+    rows = at_slip(table, slide_to_roll_ratio)
+    rows = rows.stack(operating_point=POINT_DIMS, create_index=False)
+    slips = np.full(rows.sizes["operating_point"], slide_to_roll_ratio)
+    rows = rows.assign_coords(slide_to_roll_ratio=("operating_point", slips))
+    return rows.transpose("operating_point", ...)
+
+
+def levels_at(points: xr.Dataset, number: int) -> dict[str, float | str]:
+    """Return the levels of an operating point, by the names of `lube.schema.EXPERIMENT_DIMS`."""
+    return {name: points[name][number].item() for name in EXPERIMENT_DIMS}
+
+
+def known_rows(film: xr.Dataset, points: Sequence[Mapping[str, Any]], gap: Gap) -> xr.Dataset:
+    """Select the rows of a film table at the points of traces, where the film is known.
+
+    Parameters
+    ----------
+    film, points
+        As in `rows_at`.
+    gap : Gap
+        As in `known_films`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over operating_point. The log names the points that are left out.
+
+    Raises
+    ------
+    DataError
+        If the film is known at none of the points.
+    """
+    rows = rows_at(film, points)
+    known = known_films(rows, gap).values
+    for number in np.flatnonzero(~known):
+        log.warning("traces.%d: left out, the film is not known there", number)
+    if not known.any():
+        raise DataError("traces: the film is known at none of the points, need it at one or more")
+    return rows.isel(operating_point=known)

@@ -27,7 +27,7 @@ import xarray as xr
 from lube.contact.rough_pair import drawn
 from lube.contact.windows import study_windows
 from lube.grid.discretise import revolution, speed_ratios
-from lube.grid.operating_points import OperatingPoint, surface_speeds
+from lube.grid.operating_points import surface_speeds
 from lube.kernels.circuit import sampled_voltage
 from lube.physics.electrical import contact_resistance, film_capacitance
 from lube.study.rig_settings import Rig
@@ -41,7 +41,7 @@ TOGETHER = 16
 
 
 def simulated_revolutions(
-    study: Study, points: list[OperatingPoint]
+    study: Study, points: xr.Dataset
 ) -> Iterator[tuple[int, int, "Revolution"]]:
     """Run all pairs of the rig's rollers, each at all operating points.
 
@@ -49,8 +49,9 @@ def simulated_revolutions(
     ----------
     study : Study
         Its rig, the rig's rollers, boundary layer, resistivity and seed.
-    points : list of OperatingPoint
-        From `lube.grid.operating_points.operating_points`; all of one slide-to-roll ratio.
+    points : xarray.Dataset
+        Over operating_point, from `lube.grid.operating_points.operating_points`; all of one
+        slide-to-roll ratio.
 
     Yields
     ------
@@ -64,18 +65,20 @@ def simulated_revolutions(
     of_pairs = np.reshape(study.rig_realisations, (study.rig.pairs, -1)).tolist()
     for pair, numbers in enumerate(of_pairs):
         drawn_once = functools.cache(partial(drawn, study))
-        for begin in range(0, len(points), TOGETHER):
-            some = points[begin : begin + TOGETHER]
+        for begin in range(0, points.sizes["operating_point"], TOGETHER):
+            some = points.isel(operating_point=slice(begin, begin + TOGETHER))
             for turn, contacts in enumerate(_turns(study, some, map(drawn_once, numbers))):
                 for number, contact in enumerate(contacts, begin):
                     seed = (study.seed, numbers[0], number + 1, turn)
-                    yield pair, number, _revolution(contact, points[number], study, seed)
-            log.info("simulated rig: pair %d, %d operating points", pair + 1, begin + len(some))
+                    point = points.isel(operating_point=number)
+                    yield pair, number, _revolution(contact, point, study, seed)
+            run = begin + some.sizes["operating_point"]
+            log.info("simulated rig: pair %d, %d operating points", pair + 1, run)
 
 
 def _turns(study, points, pairs):
     """Grid points in contact at all time steps of each turn, at some operating points."""
-    slip, windows = points[0].levels["slide_to_roll_ratio"], _windows(study, points)
+    slip, windows = points["slide_to_roll_ratio"][0].item(), study_windows(study, points)
     ratios = speed_ratios(slip)
     for turn, pair in enumerate(drifting_rollers(study, pairs)):
         steps = revolution(pair, ratios)
@@ -83,14 +86,6 @@ def _turns(study, points, pairs):
             contacts = windows.trace(pair, slip, turn * steps)
         part = min(study.rig.revolutions - turn, 1.0)
         yield contacts[:, : max(round(part * steps), 1)]
-
-
-def _windows(study, points):
-    """Contact windows of some operating points."""
-    rows = [point.row for point in points]
-    film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
-    alike = ["reduced_modulus", "reduced_radius", "composite_rms_roughness"]
-    return study_windows(study, film.assign(rows[0][alike]))
 
 
 def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
@@ -119,13 +114,13 @@ def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
 
 def _revolution(contact, point, study, seed):
     capacitance = film_capacitance(
-        point.row["film_thickness"].item(),
-        point.row["contact_half_width"].item(),
+        point["film_thickness"].item(),
+        point["contact_half_width"].item(),
         study.rollers.length,
         study.rig.oil_permittivity,
     )
-    slip = point.levels["slide_to_roll_ratio"]
-    speeds = surface_speeds(point.row["entrainment_speed"].item(), slip)
+    slip = point["slide_to_roll_ratio"].item()
+    speeds = surface_speeds(point["entrainment_speed"].item(), slip)
     spacing = study.line_spec.spacing
     time_step, resistance = spacing / max(speeds), study.resistivity / spacing
     return Revolution(contact, time_step, resistance, capacitance, seed)

@@ -91,10 +91,10 @@ def _readings(study, film, rigs, slip):
     one_turn = study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})
     once = study.model_copy(update={"rig": one_turn})
     points = operating_points(film, slip)
-    known = [number for number, one in enumerate(points) if known_films(one.row, study.gap)]
+    known = np.flatnonzero(known_films(points, study.gap))
     ways = len(READINGS) + len(study.experiment.thresholds)
-    shares = np.full((len(points), 1 + len(rigs) * ways), np.nan)
-    for _, number, revolution in simulated_revolutions(once, [points[one] for one in known]):
+    shares = np.full((points.sizes["operating_point"], 1 + len(rigs) * ways), np.nan)
+    for _, number, revolution in simulated_revolutions(once, points.isel(operating_point=known)):
         found = [np.count_nonzero(revolution.contact) / revolution.contact.size]
         for rig in rigs.values():
             for read in read_shares(revolution.voltage(rig), study.experiment, rig):

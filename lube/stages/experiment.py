@@ -11,7 +11,7 @@ import xarray as xr
 
 from lube.errors import DataError, LubeError
 from lube.grid.levels import rolling
-from lube.grid.operating_points import known_films, operating_points
+from lube.grid.operating_points import known_films, levels_at, operating_points
 from lube.inference.study_shares import levels_named
 from lube.recordings.manifest import Manifest, read_manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
@@ -59,33 +59,32 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
         If no film is known.
     """
     every = operating_points(film.isel(film_formula=0), rolling(study.slips))
-    points = [point for point in every if known_films(point.row, study.gap)]
+    known = known_films(every, study.gap).values
     refused = [
-        f"{_name_of_point(point, 0, study)}: the film is not known"
-        for point in every
-        if point not in points
+        f"{_name_of_point(levels_at(every, number), 0, study)}: the film is not known"
+        for number in np.flatnonzero(~known)
     ]
+    points = every.isel(operating_point=known)
+    levels = [levels_at(points, number) for number in range(points.sizes["operating_point"])]
     exact = dict.fromkeys(LEVELS, 0.0)
     records = {
-        (pair, number): Record(
-            Conditions(**point.levels, pair=str(pair + 1), tolerances=exact), study
-        )
+        (pair, number): Record(Conditions(**here, pair=str(pair + 1), tolerances=exact), study)
         for pair in range(study.rig.pairs)
-        for number, point in enumerate(points)
+        for number, here in enumerate(levels)
     }
     for pair, number, revolution in simulated_revolutions(study, points):
         records[pair, number].add_revolution(revolution)
     rows = [
-        record.evaluate() | {"record": _name_of_point(points[number], pair, study)}
+        record.evaluate() | {"record": _name_of_point(levels[number], pair, study)}
         for (pair, number), record in records.items()
     ]
     return _dataset(rows, study, "simulated", refused)
 
 
-def _name_of_point(point, pair, study):
+def _name_of_point(levels, pair, study):
     """Operating point, and lubricant and pair if there are several."""
-    words = [levels_named({name: point.levels[name] for name in LEVELS})]
-    words += [point.levels["lubricant"]] * (len(study.lubricants) > 1)
+    words = [levels_named({name: levels[name] for name in LEVELS})]
+    words += [levels["lubricant"]] * (len(study.lubricants) > 1)
     words += [f"pair {pair + 1}"] * (study.rig.pairs > 1)
     return ", ".join(words)
 

@@ -3,12 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from lube.errors import DataError
-from lube.grid.operating_points import OperatingPoint, known_films, operating_points
+from lube.grid.operating_points import known_rows
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import record_counter
 from lube.rig.simulator import simulated_revolutions
-from lube.schema import EXPERIMENT_DIMS, POINT_DIMS, label, with_dims
+from lube.schema import EXPERIMENT_DIMS, label, with_dims
 from lube.study.study import Study
 from lube.types import Datasets
 
@@ -38,23 +37,22 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     DataError
         If the film is known at none of the points.
     """
-    points = [_point_at(levels, inputs["film"]) for levels in study.trace_points]
-    points = [point for point in points if known_films(point.row, study.gap)]
-    if not points:
-        raise DataError("traces: the film is known at none of the points, need it at one or more")
+    points = known_rows(inputs["film"], study.trace_points, study.gap)
+    count = points.sizes["operating_point"]
     rigs = [study.rig.model_copy(update={"bandwidth": band}) for band in BANDWIDTHS]
     interval = 1.0 / study.rig.sampling_rate
     counters = [
-        [record_counter(study.experiment, rig, "voltage", interval) for rig in rigs] for _ in points
+        [record_counter(study.experiment, rig, "voltage", interval) for rig in rigs]
+        for _ in range(count)
     ]
-    voltages, steps = {}, np.zeros((len(points), 2), int)
+    voltages, steps = {}, np.zeros((count, 2), int)
     for _, number, revolution in simulated_revolutions(study, points):
         if number not in voltages:
             voltages[number] = revolution.voltage(study.rig)
         for rig, counter in zip(rigs, counters[number], strict=True):
             counter.add(revolution.voltage(rig))
         steps[number] += np.count_nonzero(revolution.contact), revolution.contact.size
-    voltage = np.array([voltages[number] for number in range(len(points))])
+    voltage = np.array([voltages[number] for number in range(count)])
     values = {
         "voltage": voltage,
         "resistance": resistance_from_voltage(voltage, study.rig),
@@ -62,7 +60,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         "true_contact_share": steps[:, 0] / steps[:, 1],
     }
     values |= {f"rig_{name}": getattr(study.rig, name) for name in _KEPT}
-    levels = {name: [point.levels[name] for point in points] for name in EXPERIMENT_DIMS}
+    levels = {name: points[name].values for name in EXPERIMENT_DIMS}
     levels |= {
         "rig_time": interval * np.arange(voltage.shape[1]),
         "bandwidth": np.array(BANDWIDTHS),
@@ -71,10 +69,3 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         "revolutions": study.rig.revolutions,
     }
     return label(xr.Dataset(with_dims("rig", values), with_dims("rig", levels)), "rig")
-
-
-def _point_at(levels: dict, film: xr.Dataset) -> OperatingPoint:
-    """Operating point of the given levels, with the film thickness of its formula."""
-    table = film.sel(film_formula=levels["film_formula"])
-    here = table.sel({name: [levels[name]] for name in POINT_DIMS})
-    return operating_points(here, levels["slide_to_roll_ratio"])[0]

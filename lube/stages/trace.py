@@ -10,11 +10,10 @@ import xarray as xr
 from lube.contact.waves import Waves, answers_at, lifted
 from lube.contact.window_films import film_on_points
 from lube.contact.windows import ContactWindows
-from lube.errors import DataError
 from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, speed_ratios, whole_numbers
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
-from lube.grid.operating_points import known_films, rows_at, surface_speeds
+from lube.grid.operating_points import known_rows, surface_speeds
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.physics.electrical import contact_resistance
@@ -81,7 +80,7 @@ def contact_trace(
     DataError
         If the film is known at none of the points.
     """
-    table = _known_rows(film, points, gap)
+    table = known_rows(film, points, gap)
     windows = ContactWindows(LineGrid.of(lines), table, boundary_layer, gap)
     ratio, spacing = points[0]["slide_to_roll_ratio"], lines.attrs["spacing"]
     length = windows.trace(line_pair(lines, REALISATION), ratio) * spacing
@@ -103,17 +102,6 @@ def contact_trace(
         trace["film_profile"] = shaped_films(table)
     time = spacing / faster_surface * np.arange(length.shape[1])
     return label(trace.assign_coords(time=time).assign_attrs(asdict(gap)), "trace")
-
-
-def _known_rows(film, points, gap):
-    """Rows of the film table at the operating points, along ``operating_point``."""
-    rows = rows_at(film, points)
-    known = known_films(rows, gap).values
-    for number in np.flatnonzero(~known):
-        log.warning("traces.%d: left out, the film is not known there", number)
-    if not known.any():
-        raise DataError("traces: the film is known at none of the points, need it at one or more")
-    return rows.isel(operating_point=known)
 
 
 def contact_window(

@@ -107,7 +107,10 @@ def test_every_pair_passes_all_points_for_all_its_revolutions(finer, with_rig, p
     several = with_rig(finer, pairs=3, revolutions=2.5)
     passed = run(several, points)
     assert [(pair, number) for pair, number, _ in passed] == [
-        (pair, number) for pair in range(3) for _turn in range(3) for number in range(len(points))
+        (pair, number)
+        for pair in range(3)
+        for _turn in range(3)
+        for number in range(points.sizes["operating_point"])
     ]
     assert all(revolution.seed[2] == number + 1 for _, number, revolution in passed)
     sizes = [
@@ -124,7 +127,7 @@ def test_its_contacts_are_those_of_the_contact_stage(finer, with_rig, rig_film, 
     found = contact_statistics(lines, rig_film, finer.boundary_layer, [slip], revolutions=2)
     expected = found["breakthrough_probability"].isel(film_formula=0, slide_to_roll_ratio=0)
     points = operating_points(rig_film.isel(film_formula=0), slip)
-    touched = np.zeros((2, len(points)))
+    touched = np.zeros((2, points.sizes["operating_point"]))
     for pair, number, revolution in run(two, points):
         touched[pair, number] += np.mean(revolution.contact > 0) / 2.0
     np.testing.assert_allclose(touched.ravel(), expected.values.ravel(), rtol=within, atol=2e-5)
@@ -161,7 +164,7 @@ def test_drift_renews_its_share_of_the_variance_each_turn(finer, with_rig, drift
 def test_the_faster_surface_passes_one_grid_point_each_time_step(finer, with_rig, slipping):
     one = with_rig(finer, revolutions=1)
     _, _, revolution = run(one, slipping)[0]
-    faster = 1.05 * slipping[0].row["entrainment_speed"].item()
+    faster = 1.05 * slipping["entrainment_speed"][0].item()
     assert revolution.time_step == pytest.approx(finer.line_spec.spacing / faster)
     turn = 2.0 * np.pi * finer.rollers.first.radius / faster
     assert revolution.contact.size * revolution.time_step == pytest.approx(turn)
