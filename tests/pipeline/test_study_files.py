@@ -52,7 +52,7 @@ def test_a_sensitivity_study_is_checked_with_all_that_it_is_made_for(paper_with)
     results = "plan.nc", "figures/fig43_bands.png", "batches/sensitivity_runs_3.nc"
     asked = "sensitivity", "measurement_plan", "record_bands", *map(files.result, results)
     for target in asked:
-        with pytest.raises(SystemExit, match="uncertainty: got one with load_sharing iterated"):
+        with pytest.raises(SystemExit, match="load_sharing: got iterated"):
             files.check_targets(["--cores", "2", target], figures)
 
 
