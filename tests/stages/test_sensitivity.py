@@ -47,6 +47,7 @@ def few():
     patch = pytest.MonkeyPatch()
     patch.setattr(runs, "SIZES", dict.fromkeys(runs.SIZES, (64, 2)))
     patch.setattr(indices, "BASE_SAMPLES", 256)
+    patch.setattr(indices, "TRAJECTORIES", 100)
     yield
     patch.undo()
 
