@@ -283,9 +283,8 @@ def scaled_checks(study: Study, lubricant: xr.Dataset) -> dict[str, float]:
 
 
 def _other_rollers(rollers):
-    each = {name: getattr(rollers, name) for name in ROLLERS}
-    larger = {name: {"radius": LARGER * one.radius} for name, one in each.items()}
-    larger = {name: each[name].model_copy(update=radius) for name, radius in larger.items()}
+    each = ((name, getattr(rollers, name)) for name in ROLLERS)
+    larger = {name: one.model_copy(update={"radius": LARGER * one.radius}) for name, one in each}
     return rollers.model_copy(update=larger | {"length": LONGER * rollers.length})
 
 
