@@ -5,7 +5,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from lube.grid.model_limits import rubbing
+from lube.grid.model_limits import deformed, rubbing
 from lube.physics.excursions import mean_overlap
 from lube.units import with_unit
 
@@ -98,7 +98,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     share = expected_load_share(film, rollers)
     loaded, overloaded = (int((share > limit).sum()) for limit in (0.1, 1.0))
     more = f"at {overloaded} more than all of it, " if overloaded else ""
-    rubs = int(rubbing(film).sum())
+    rubs, bends = int(rubbing(film).sum()), int(deformed(film).sum())
     found = {
         f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel 210 GPa": (
             min(moduli) < 1e9 or max(moduli) > 1.2e12
@@ -118,6 +118,8 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         "carries it": loaded,
         f"load share: at {rubs} of {share.size} operating points the surfaces' asperities carry "
         "more than a tenth of the load, where the film of smooth rollers is less certain": rubs,
+        f"roughness: at {bends} of {share.size} operating points the oil changes it by more than a "
+        "tenth of the film, where the linear response is not valid": bends,
     }
     return [text for text, unlikely in found.items() if unlikely]
 

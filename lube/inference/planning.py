@@ -132,7 +132,8 @@ def relative_error(
         Variance v of the record's share over that of a revolution, from
         `lube.statistics.one_pair.scatter_ratio`.
     reading : numpy.ndarray or float, optional
-        Relative error r of the rig's reading.
+        Relative error r of the rig's reading. It is a bias, the same in every record, seen on one
+        simulated pair. It is added as if it were random, with either sign.
 
     Returns
     -------

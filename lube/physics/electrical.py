@@ -75,8 +75,8 @@ def divider_voltage(resistance: Values, circuit: Circuit) -> Values:
 
     Examples
     --------
-    >>> from types import SimpleNamespace
-    >>> circuit = SimpleNamespace(bias_voltage=1.0, series_resistance=100.0, lead_resistance=0.0)
+    >>> from lube.study.rig_settings import Rig
+    >>> circuit = Rig(bias_voltage="1 V", series_resistance="100 ohm", lead_resistance="0 ohm")
     >>> divider_voltage(np.array([100.0, np.inf]), circuit).tolist()
     [0.5, 1.0]
     """
@@ -104,8 +104,8 @@ def resistance_from_voltage(voltage: Values, circuit: Circuit) -> Values:
 
     Examples
     --------
-    >>> from types import SimpleNamespace
-    >>> circuit = SimpleNamespace(bias_voltage=1.0, series_resistance=100.0, lead_resistance=0.0)
+    >>> from lube.study.rig_settings import Rig
+    >>> circuit = Rig(bias_voltage="1 V", series_resistance="100 ohm", lead_resistance="0 ohm")
     >>> resistance_from_voltage(np.array([0.0, 0.5, 1.0]), circuit).tolist()
     [0.0, 100.0, inf]
     """

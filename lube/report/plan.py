@@ -73,7 +73,8 @@ def _durations(points):
     durations = (f"{turns:g} revolutions" for turns in least["turns"].values)
     threshold = points["best_threshold"].item()
     error = percent(points["reading_error"].median().item())
-    said = f"Read the share below {threshold:g} Ω: the rig then misreads it by {error} (median)."
+    way = f"below {threshold:g} Ω" if threshold > 0.0 else "from the mean voltage"
+    said = f"Read the share {way}: the rig then misreads it by {error} (median)."
     table = markdown_table(["best interval by duration", *durations], rows)
     return f"{table}\n\n{said}"
 

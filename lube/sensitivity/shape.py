@@ -1,5 +1,6 @@
 """The flat film that contact sees in a film with a shape."""
 
+import logging
 from collections.abc import Callable
 
 import numpy as np
@@ -9,6 +10,8 @@ from scipy.interpolate import RegularGridInterpolator
 from lube.ehl.line_contact import ConvergenceError, LineContact, solve
 from lube.sensitivity.conditions import Deviating
 from lube.types import Array
+
+log = logging.getLogger(__name__)
 
 NODES = 12, 7, 30
 """Levels of Moes' numbers M and L, and of the lambda ratio."""
@@ -49,8 +52,9 @@ def effective_ratio(deviating: Deviating, ranges: Array) -> Callable[[Array, Arr
             try:
                 film = solve(LineContact(load, speed, material, viscosity, modulus))
                 shape = film.scaled_gap(WINDOW) / film.central_gap
-            except ConvergenceError:
-                pass  # the shape changes little from one level to the next
+            except ConvergenceError as error:
+                # The shape changes little from one level to the next.
+                log.warning("M = %.3g, L = %.3g: %s", moes_load, moes_material, error)
             values[row, column] = _ratio(levels[2][:, None], shape) / levels[2]
     logarithms = tuple(np.log(each) for each in levels)
     options = {"bounds_error": False, "fill_value": None}

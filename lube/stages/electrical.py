@@ -22,7 +22,8 @@ PAIRS = 8
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     r"""Make ``electrical.nc``; see `lube.stages`.
 
-    All values are for the first film formula and the slide-to-roll ratio nearest to pure rolling.
+    All values are for contact of the line, the first film formula and the slide-to-roll ratio
+    nearest to pure rolling.
     The simulated rig runs for one revolution at each operating point.
 
     Notes

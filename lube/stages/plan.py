@@ -32,14 +32,15 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``plan.nc``; see `lube.stages`.
 
     All values are for the first film formula and the slide-to-roll ratio nearest to pure rolling,
-    and for records of one pair of rollers with the study's rig. Slopes are those of lines.
+    and for records of one pair of rollers with the study's rig. Probabilities, slopes and scatter
+    are those of the line.
     """
     slip = rolling(study.slips)
     film = at_slip(inputs["film"], slip).isel(film_formula=0, drop=True).transpose(*POINT_DIMS, ...)
     sizes = [film.sizes[name] for name in POINT_DIMS]
     choices = study.boundary_layer, study.gap, study.seed, threads
     found = planning.slopes(study.line_spec, film, *choices)
-    threshold, reading = _best_threshold(inputs["electrical"], study.experiment.threshold)
+    threshold, reading = _reading(inputs["electrical"], study)
     point = inputs["lubricant"], study.rough_rollers, film["force"], film["speed"]
     by_coefficient = planning.film_by_coefficient(
         *point, study.film_formulas[0], slide_to_roll_ratio=slip, **study.inlet_model
@@ -96,21 +97,25 @@ def _ratio(study, slip, turns):
     return scatter_ratio(turns, *known) / scatter_ratio(study.revolutions, *known)
 
 
-def _best_threshold(electrical, own):
+def _reading(electrical, study):
     """Threshold at which the study's rig reads the share best, and its relative errors there.
 
-    It is the study's own, without an error, if the simulated rig never touches.
+    The threshold is NaN for a meter that has none, and the study's own, without an error, if the
+    simulated rig never touches.
     """
     true = electrical["true_contact_share"].transpose(*POINT_DIMS)
-    read = electrical["threshold_contact_share"].sel(rig=OWN_RIG, drop=True)
+    read = electrical["threshold_contact_share"]
+    if study.rig.reading != "threshold":
+        read = electrical["read_contact_share"].sel(reading=[study.rig.reading])
+        read = read.rename(reading="threshold").assign_coords(threshold=[np.nan])
+    read = read.sel(rig=OWN_RIG, drop=True)
     off = np.abs(read / true.where(true > 0.0) - 1.0).transpose("threshold", *POINT_DIMS)
-    mean = off.mean(POINT_DIMS)
-    if mean.isnull().all():
-        return own, np.zeros(true.size)
-    best = mean["threshold"].values[int(np.argmin(mean.values))]
+    mean = off.mean(POINT_DIMS).values
+    if np.isnan(mean).all():
+        return study.experiment.threshold, np.zeros(true.size)
+    best = off.isel(threshold=int(np.argmin(mean)))
     # Where the simulated rig does not touch, it reads as well as on average.
-    errors = off.sel(threshold=best).fillna(mean.sel(threshold=best))
-    return best, errors.values.ravel()
+    return best["threshold"].item(), best.fillna(best.mean()).values.ravel()
 
 
 def _assumed(sensitivity):

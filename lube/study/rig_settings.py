@@ -28,31 +28,39 @@ class Preset(NamedTuple):
         Keys of `Rig` with their values; all others are as in the study.
     source : str
         Where they come from.
+    reading : str
+        What its meter reads, one of `lube.rig.readings.READINGS`.
     """
 
     settings: dict[str, Any]
     source: str
+    reading: str = "threshold"
 
 
 _ECR = (
     "PCS Instruments, data sheet of the option ECR of the mini traction machine MTM2: some 15 mV "
     "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm; range assumed"
 )
+
+
+def _ecr(resistor):
+    settings = {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": resistor}
+    return Preset(settings, _ECR, "mean voltage")
+
+
 PRESETS = {
-    "mtm-ecr": Preset(
-        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "100 ohm"}, _ECR
-    ),
-    "mtm-ecr-10-kohm": Preset(
-        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "10 kohm"}, _ECR
-    ),
+    "mtm-ecr": _ecr("100 ohm"),
+    "mtm-ecr-10-ohm": _ecr("10 ohm"),
+    "mtm-ecr-1-kohm": _ecr("1 kohm"),
+    "mtm-ecr-10-kohm": _ecr("10 kohm"),
     "threshold-counter": Preset(
         {"bandwidth": "1 MHz", "sampling_rate": "1 MHz", "noise": "50 uV"},
-        "a fast comparator at the paper's threshold of 100 ohm; bandwidth and noise assumed",
+        "a fast comparator at the study's threshold, from no data sheet; all values assumed",
     ),
     "impedance-bridge": Preset(
         {"bias_voltage": "1 V", "amplifier_range": "2 V", "series_resistance": "1 kohm"},
-        "as for impedance spectroscopy (Manjunath and others, Lubricants 12 (2024) 51); values "
-        "assumed",
+        "a bridge as for impedance spectroscopy (Manjunath and others, Lubricants 12 (2024) 51), "
+        "from no data sheet; all values assumed",
     ),
 }
 """Known rigs, by the name that a study gives."""
@@ -113,6 +121,11 @@ class Rig(StrictModel, validate_default=True):
         """Return this rig with the settings of a known one."""
         known = Rig(preset=preset).model_dump(include={"preset", *PRESETS[preset].settings})
         return self.model_copy(update=known)
+
+    @property
+    def reading(self) -> str:
+        """What its meter reads; a rig without a preset has a threshold."""
+        return PRESETS[self.preset].reading if self.preset else "threshold"
 
     @property
     def resolved_voltage(self) -> float:

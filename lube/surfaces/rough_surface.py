@@ -227,9 +227,14 @@ def surface_grid(
         times = side / spacing / LARGEST
         if times > 1.0:
             lay = ", or shorter ridges" * any(ratio > 1.0 for ratio, _ in lays)
+            # The side decreases with the longest wave, unless the contact is too wide for any.
+            most = min(side / times / waves, side / times - width) / longest
+            own = max(2.0 * math.pi / line.q_min for line in spec.lines)
+            # Rounded down, so that the length does.
+            shorter = f", or a longest of {0.995 * most * own:.3g} m" if most > 0.0 else ""
             raise DataError(
                 f"roughness: got a shortest wavelength of {shortest:.3g} m, too short for a "
-                f"surface of {side:.3g} m, need one {times:.3g} times as long{lay}"
+                f"surface of {side:.3g} m, need one {times:.3g} times as long{lay}{shorter}"
             )
         sides.append(side)
         spacings.append(spacing)

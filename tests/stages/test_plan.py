@@ -124,3 +124,14 @@ def test_the_best_threshold_is_one_of_the_studys_and_read_best(study, files, fou
     mean = off.mean(POINT_DIMS)
     assert found["best_threshold"] in study.experiment.thresholds
     assert mean.sel(threshold=found["best_threshold"].item()) == mean.min()
+
+
+def test_a_meter_of_the_mean_voltage_has_no_threshold(study, files):
+    meter = study.model_copy(update={"rig": study.rig.like("mtm-ecr-10-ohm")})
+    found = plan.make(meter, files, 2)
+    electrical = files["electrical"].sel(rig="study", reading="mean voltage", drop=True)
+    true = electrical["true_contact_share"].where(electrical["true_contact_share"] > 0.0)
+    off = np.abs(electrical["read_contact_share"] / true - 1.0)
+    expected = off.fillna(off.mean()).transpose(*found["reading_error"].dims)
+    np.testing.assert_allclose(found["reading_error"], expected, rtol=1e-5)
+    assert "Read the share from the mean voltage" in tables(found)

@@ -4,6 +4,7 @@ import pytest
 from studies import PAPER
 
 from lube.errors import StudyError
+from lube.rig.readings import READINGS
 from lube.study.rig_settings import PRESETS, Rig
 from lube.study.study import load_study
 
@@ -18,6 +19,11 @@ def test_a_known_rig_has_its_settings_and_the_studys_for_all_others(name):
             assert getattr(rig, key) == getattr(known, key)
     assert rig.oil_permittivity == 2.5
     assert Rig(oil_permittivity=2.5).like(name) == rig
+
+
+def test_every_reading_is_one_that_is_simulated():
+    assert {Rig(preset=name).reading for name in PRESETS} <= set(READINGS)
+    assert Rig().reading == "threshold"
 
 
 def test_values_of_the_study_take_precedence():

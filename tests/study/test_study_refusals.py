@@ -178,7 +178,7 @@ def test_surfaces_that_cannot_touch_are_refused(paper_with):
         (("roughness_deformation", "venner-1997"), "got venner-1997, need none or computed"),
         (("roughness.kurtosis", 4), "roughness: got a skewness of 0 and"),
         (("rollers.length", "0.1 mm"), "rollers.length: got 0.0001 m, need the contact width of"),
-        (("roughness.points", 4_000_000), "need one 1.31 times as long"),
+        (("roughness.points", 4_000_000), "need one 1.31 times as long, or a longest of"),
     ]:
         said = refusal(paper_with(("contact_model", ["line", "surface"]), *changes))
         assert "mine.yaml: contact_model: surface: " in said and message in said

@@ -71,6 +71,19 @@ def test_a_kernel_that_misses_a_point_is_found(few, study, monkeypatch):
     assert lines.line_checks(study, lines.curves(study, 2), 2)["whole_windows"] > 0.0
 
 
+def test_rollers_with_another_contact_width_are_found(study, monkeypatch):
+    monkeypatch.setattr(lines, "_other_rollers", lambda rollers: rollers)
+    seen = lines.scaled_checks(study, make_lubricant(study, {}))
+    assert seen["scaled_films"] > 1.0
+    assert seen["scaled_contact"] > 0.0
+
+
+def test_deviations_from_a_limit_and_a_bound_are_shown_as_they_are(found):
+    deviation = dict(zip(CHECKS.index, found["check_deviation"].values, strict=True))
+    assert deviation["bound"] < 0.0
+    assert deviation["sharp_runs"] > 1.0
+
+
 def test_more_points_change_little_and_another_band_more(found):
     ratio = found["breakthrough_probability_ratio"]
     assert abs(ratio.sel(grid="twice the points") - 1.0).max() < 0.05
