@@ -97,9 +97,10 @@ def duty(
         metal contact, counted; ``whole_tail_probability``, the same by importance sampling; and
         ``whole_tail_rate``, breakthroughs per hour; each with ``_lower`` and ``_upper``. These
         limits are those of the mean over pairs of rollers. All points have the same pairs, so the
-        whole cycle is computed on each pair first. For the surface it is
-        ``whole_surface_probability``, with limits as wide as if the errors at all points were the
-        same. The attribute ``remarks`` is as in `lube.contact_probability`.
+        whole cycle is computed on each pair first. For the surface they are
+        ``whole_surface_probability`` and ``whole_surface_rate``, with limits as wide as if the
+        errors at all points were the same. The attribute ``remarks`` is as in
+        `lube.contact_probability`.
 
     Raises
     ------
@@ -136,9 +137,9 @@ def duty(
         parts = joined(table, contact, on_pairs)
     if "surface" in choices.models:
         parts = parts.assign(of_surface(table, rollers, seed, gap, slip))
-        for end in LIMITS:
-            of_points = parts[f"surface_breakthrough_probability{end}"]
-            whole[f"whole_surface_probability{end}"] = (of_points * share).sum(skipna=False)
+        for name in [f"{kind}{end}" for kind in ("probability", "rate") for end in LIMITS]:
+            of_points = parts[f"surface_breakthrough_{name}"]
+            whole[f"whole_surface_{name}"] = (of_points * share).sum(skipna=False)
     found = columns | {"share": share} | dict(parts.data_vars) | whole
     found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers)
     for name in labels.keys() & found.variables.keys():

@@ -29,10 +29,11 @@ from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.plausibility import remarks
-from lube.schema import OPERATING_DIMS, POINT_DIMS
+from lube.inference.surface_scatter import revolution_size, surface_prediction
+from lube.schema import LIMITS, OPERATING_DIMS, POINT_DIMS
 from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
-from lube.stages.tail import pair_limits, pair_probabilities
+from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.stages.trace import contact_trace
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.synthetic import draw_realisation
@@ -250,9 +251,13 @@ def contact_probability(
         ``surface_breakthroughs`` and ``surface_contacts`` at any moment, each with ``_lower`` and
         ``_upper``. By theory: ``surface_load_share``, the share of the load that their asperities
         would carry; ``surface_pair_deviation``, the standard deviation of the share of
-        one pair of rollers in a revolution; ``surface_passage_width``, over which the rollers move
+        one pair of rollers in a revolution of pure rolling, and
+        ``surface_breakthrough_probability_pair_lower`` and ``_pair_upper``, between which this
+        share lies in 95 % of cases; ``surface_passage_width``, over which the rollers move
         while a contact is in the strip; and, if the oil does not deform the roughness,
-        ``surface_expected_breakthroughs`` and ``surface_expected_contacts``.
+        ``surface_expected_breakthroughs`` and ``surface_expected_contacts``. From numbers and
+        passage: ``surface_breakthrough_rate``, per hour, with ``_lower`` and ``_upper``, and
+        ``surface_breakthrough_duration``.
 
     Raises
     ------
@@ -301,6 +306,13 @@ def of_surface(
     """Contact of the surface at some films, by the names of `contact_probability`."""
     given = rollers.lines, rollers.pair.length, table, rollers.layer, seed, gap
     found = surface_contact(*given, slide_to_roll_ratio=slip)
+    found = found.assign(surface_rates(found, table["entrainment_speed"]))
+    share = [found[f"breakthrough_probability{end}"] for end in LIMITS]
+    of_pair = surface_prediction(
+        [limit.values for limit in share], revolution_size(rollers.lines, found)
+    )
+    for end, limit in zip(LIMITS[1:], of_pair, strict=True):
+        found[f"breakthrough_probability_pair{end}"] = share[0].copy(data=limit)
     return {f"surface_{name}": values for name, values in found.items()}
 
 
