@@ -389,6 +389,8 @@ def trace(
     temperature: str,
     *,
     film_formula: str = FORMULA,
+    film_shape: str = "flat",
+    roughness_deformation: str = "none",
     slide_to_roll_ratio: float = 0.0,
     seed: int = SEED,
 ) -> Answer:
@@ -398,7 +400,7 @@ def trace(
     ----------
     rollers, oil, force, speed, temperature, film_formula
         As in `film`, one value of each.
-    slide_to_roll_ratio, seed
+    film_shape, roughness_deformation, slide_to_roll_ratio, seed
         As in `contact_probability`; the trace is that of realisation 0.
 
     Returns
@@ -420,13 +422,16 @@ def trace(
     '120 ms'
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
+    choices = Choices.of(film_shape, roughness_deformation, "none", "line")
     one = _one_point(rollers, oil, force, speed, temperature)
-    table = film_table(*one, [one_name("film_formula", film_formula)])
+    model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}
+    table = film_table(*one, [one_name("film_formula", film_formula)], **model)
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     rollers.lines.check_width(2.0 * table["contact_half_width"].item(), "force: the contact")
     rollers.lines.check_follows_rolling()
     lines = roughness_batch(rollers.lines, seed, [0])
-    found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
+    given = rollers.layer, rollers.resistivity, choices.gap
+    found = contact_trace(lines, table, [point], *given)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
     return described(found[names].isel(operating_point=0).drop_attrs())
 

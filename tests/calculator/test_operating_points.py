@@ -259,6 +259,18 @@ def test_a_profile_is_of_one_point(rollers, oil):
         lube.profile(rollers, oil, **POINT | {"force": ["1 N", "2 N"]})
 
 
+@pytest.mark.parametrize("deformation", ["none", "venner-1997", "computed"])
+def test_a_trace_has_the_shape_and_deformation_of_the_probability(rollers, oil, deformation):
+    hot = POINT | {"temperature": "80 degC"}
+    choices = {"film_shape": "computed", "roughness_deformation": deformation, "seed": 4}
+    choices |= {"slide_to_roll_ratio": 0.4}
+    length = lube.trace(rollers, oil, **hot, **choices)["contact_length"]
+    counted = lube.contact_probability(rollers, oil, **hot, **choices, realisations=1)
+    probability = counted["breakthrough_probability_mean"].item()
+    # Under uneven films contact is counted at some of the time steps.
+    assert np.mean(length.values > 0.0) == pytest.approx(probability, rel=0.1)
+
+
 def test_the_trace_of_an_insulator_has_no_resistance(oil):
     insulator = lube.Rollers("2 mm", "0.2 um", resistivity="insulator")
     point = {"force": "5 N", "speed": "100 rpm", "temperature": "60 degC"}
