@@ -48,6 +48,16 @@ _MODELS = (
 """Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
 _LENGTHS = ("longest_wavelength", "shortest_wavelength")
 _LAYER = ("critical_thickness", "shear_strength")
+_TAKEN_BY = {
+    "bands": "only contact_probability takes it: it is sampled at each operating point alone",
+    "contact_model": "only contact_probability, duty and the required_ functions take it",
+    "load_sharing": "only contact_probability and duty take it: the oil carries the whole load",
+    "slide_to_roll_ratio": (
+        "only contact_probability, trace and plan take it: duty points have two surface speeds, "
+        "other answers are for pure rolling"
+    ),
+}
+"""Choices that some functions lack, and which have them."""
 _Function = TypeVar("_Function", bound=Callable)
 
 
@@ -78,6 +88,8 @@ def with_parts(function: _Function) -> _Function:
 
 def _meant(name, signature):
     """Name the arguments that were probably meant: those that contain the name, or the nearest."""
+    if name in _TAKEN_BY:
+        return _TAKEN_BY[name]
     names = [each for each in signature.parameters if each != "self"]
     longer = [each for each in names if name in each]
     return f"did you mean {' or '.join(longer)}?" if longer else right_one(name, names)
