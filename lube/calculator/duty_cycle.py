@@ -34,7 +34,7 @@ from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
-from lube.types import File
+from lube.types import ContactModel, File, FilmShape, LoadSharing, RoughnessDeformation
 
 _COLUMNS = {
     "force": "N",
@@ -60,10 +60,10 @@ def duty(
     oil: Oil,
     *,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    load_sharing: str = "none",
-    contact_model: str | Sequence[str] = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    load_sharing: LoadSharing = "none",
+    contact_model: ContactModel | Sequence[ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.arguments import Choices, bare_number, check_realisations, one_name
+from lube.calculator.parts import Rollers
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
@@ -18,6 +19,7 @@ from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import contact_curve, peaked_curve
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
+from lube.types import ContactModel, FilmShape, RoughnessDeformation
 
 LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 """Lambda ratios of the first look; at the highest, contact has a probability of 1e-37."""
@@ -57,8 +59,15 @@ class FilmSearch:
     """
 
     def __init__(
-        self, rollers, share, realisations, seed, contact_model, shape="flat", deformation="none"
-    ):
+        self,
+        rollers: Rollers,
+        share: float,
+        realisations: int,
+        seed: int,
+        contact_model: ContactModel,
+        shape: FilmShape = "flat",
+        deformation: RoughnessDeformation = "none",
+    ) -> None:
         model = one_name("contact_model", contact_model)
         self.choices = Choices.of(shape, deformation, "none", model)
         self._share, self._gap = bare_number("share", share, above=0.0, below=1.0), self.choices.gap

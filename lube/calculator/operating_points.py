@@ -11,7 +11,6 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
-    Amount,
     Choices,
     bare_number,
     check_realisations,
@@ -36,8 +35,10 @@ from lube.stages.film_profile import film_profile_table
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.stages.trace import contact_trace
 from lube.study.oil_properties import lubricant_table
+from lube.study.rollers import RollerPair
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
+from lube.types import Amount, ContactModel, FilmShape, LoadSharing, OneAmount, RoughnessDeformation
 
 FILM_VARIABLES = (
     "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
@@ -139,7 +140,15 @@ def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any
     }
 
 
-def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr.Dataset:
+def film_of_oil(
+    oil: Oil,
+    pair: RollerPair,
+    force: xr.DataArray,
+    speed: xr.DataArray,
+    temperature: xr.DataArray,
+    formulas: Sequence[str],
+    **choices: Any,
+) -> xr.Dataset:
     """Film table with the oil's viscosity; numbers in N, rpm and degC, over any dimensions."""
     properties = oil.at(temperature)
     table = film_at(properties, pair, force, speed, formulas, **choices)
@@ -176,11 +185,11 @@ def contact_probability(
     temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    load_sharing: str = "none",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
-    contact_model: str | Sequence[str] = "line",
+    contact_model: ContactModel | Sequence[ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,
@@ -384,13 +393,13 @@ def ensemble(
 def trace(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    speed: str,
-    temperature: str,
+    force: OneAmount,
+    speed: OneAmount,
+    temperature: OneAmount,
     *,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
     slide_to_roll_ratio: float = 0.0,
     seed: int = SEED,
 ) -> Answer:
@@ -437,7 +446,9 @@ def trace(
 
 
 @with_parts
-def profile(rollers: Rollers, oil: Oil, force: str, speed: str, temperature: str) -> Answer:
+def profile(
+    rollers: Rollers, oil: Oil, force: OneAmount, speed: OneAmount, temperature: OneAmount
+) -> Answer:
     """Pressure and film across the contact, from Reynolds' equation.
 
     Parameters

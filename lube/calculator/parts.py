@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import Amount, amount
+from lube.calculator.arguments import amount
 from lube.errors import LubeError, RecordError, StudyError, located, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.study.field_types import validate
@@ -32,7 +32,7 @@ from lube.study.rollers import (
 from lube.study.viscosity_checks import check_points
 from lube.study.viscosity_points import read_viscosity_csv
 from lube.threads import progress_bars
-from lube.types import File
+from lube.types import Amount, File
 from lube.units import parse_quantity
 
 _HEIGHT_STEP = "1 pm"

@@ -8,7 +8,6 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
-    Amount,
     Choices,
     amount,
     bare_number,
@@ -35,8 +34,9 @@ from lube.physics.electrical import film_capacitance
 from lube.rig.readings import read_shares
 from lube.rig.simulator import Revolution
 from lube.statistics.one_pair import scatter_ratio
-from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, Rig
+from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.surfaces.synthetic import draw_realisation
+from lube.types import Amount, FilmShape, OneAmount, RoughnessDeformation
 
 
 @with_parts
@@ -48,12 +48,12 @@ def plan(
     temperature: Amount,
     *,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
     slide_to_roll_ratio: float = 0.0,
     turns: float = 1.0,
-    rig: str | None = None,
-    threshold: str = "100 ohm",
+    rig: KnownRig | None = None,
+    threshold: OneAmount = "100 ohm",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:

@@ -23,6 +23,7 @@ from lube.calculator.operating_points import film_in_si
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.grid.film_profiles import shaped_films
 from lube.schema import values_with_limits
+from lube.types import ContactModel, FilmShape, OneAmount, RoughnessDeformation
 
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
@@ -33,10 +34,10 @@ TEMPERATURES = 241
 @with_parts
 def required_film(
     rollers: Rollers,
-    force: str,
+    force: OneAmount,
     *,
     share: float = 0.01,
-    contact_model: str = "line",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -46,7 +47,7 @@ def required_film(
     ----------
     rollers : Rollers
         The two rollers.
-    force : str
+    force : str, tuple or pint.Quantity
         Normal force, such as ``"800 N"``; it sets the contact width.
     share : float, optional
         Largest breakthrough probability allowed; 0.01 is one per cent.
@@ -82,15 +83,15 @@ def required_film(
 def required_viscosity(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    speed: str,
-    temperature: str,
+    force: OneAmount,
+    speed: OneAmount,
+    temperature: OneAmount,
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    contact_model: str = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -137,14 +138,14 @@ def required_viscosity(
 def required_speed(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    temperature: str,
+    force: OneAmount,
+    temperature: OneAmount,
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    contact_model: str = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -184,14 +185,14 @@ def required_speed(
 def required_temperature(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    speed: str,
+    force: OneAmount,
+    speed: OneAmount,
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    contact_model: str = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -231,15 +232,15 @@ def required_temperature(
 def required_roughness(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    speed: str,
-    temperature: str,
+    force: OneAmount,
+    speed: OneAmount,
+    temperature: OneAmount,
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    contact_model: str = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:

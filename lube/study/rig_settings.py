@@ -38,7 +38,8 @@ _ECR = (
     "PCS Instruments, data sheet of the option ECR of the mini traction machine MTM2: some 15 mV "
     "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm; range assumed"
 )
-PRESETS = {
+KnownRig = Literal["mtm-ecr", "mtm-ecr-10-kohm", "threshold-counter", "impedance-bridge"]
+PRESETS: dict[KnownRig, Preset] = {
     "mtm-ecr": Preset(
         {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "100 ohm"}, _ECR
     ),
@@ -61,7 +62,7 @@ PRESETS = {
 class Rig(StrictModel, validate_default=True):
     """Circuit, amplifier and sampling of a simulated twin-disc rig."""
 
-    preset: Literal[tuple(PRESETS)] | None = None
+    preset: KnownRig | None = None
     """a known rig, whose values hold where the study gives none of its own"""
     bias_voltage: Annotated[float, quantity("V", above=0.0)] = "50 mV"
     """voltage across rollers and series resistor"""
@@ -109,7 +110,7 @@ class Rig(StrictModel, validate_default=True):
                 return {**PRESETS[name].settings, **given}
         return given
 
-    def like(self, preset: str) -> "Rig":
+    def like(self, preset: KnownRig) -> "Rig":
         """Return this rig with the settings of a known one."""
         known = Rig(preset=preset).model_dump(include={"preset", *PRESETS[preset].settings})
         return self.model_copy(update=known)

@@ -1,10 +1,12 @@
 """Settings of known rigs."""
 
+from typing import get_args
+
 import pytest
 from studies import PAPER
 
 from lube.errors import StudyError
-from lube.study.rig_settings import PRESETS, Rig
+from lube.study.rig_settings import PRESETS, KnownRig, Rig
 from lube.study.study import load_study
 
 
@@ -18,6 +20,10 @@ def test_a_known_rig_has_its_settings_and_the_studys_for_all_others(name):
             assert getattr(rig, key) == getattr(known, key)
     assert rig.oil_permittivity == 2.5
     assert Rig(oil_permittivity=2.5).like(name) == rig
+
+
+def test_the_type_of_a_known_rig_names_all_of_them():
+    assert get_args(KnownRig) == tuple(PRESETS)
 
 
 def test_values_of_the_study_take_precedence():
