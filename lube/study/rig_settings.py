@@ -28,23 +28,29 @@ class Preset(NamedTuple):
         Keys of `Rig` with their values; all others are as in the study.
     source : str
         Where they come from.
+    reading : str
+        How it reads the contact share, one of `lube.rig.readings.READINGS`.
     """
 
     settings: dict[str, Any]
     source: str
+    reading: str = "threshold"
 
 
 _ECR = (
     "PCS Instruments, data sheet of the option ECR of the mini traction machine MTM2: some 15 mV "
-    "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm; range assumed"
+    "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm; range assumed",
+    "mean voltage",
 )
 KnownRig = Literal["mtm-ecr", "mtm-ecr-10-kohm", "threshold-counter", "impedance-bridge"]
 PRESETS: dict[KnownRig, Preset] = {
     "mtm-ecr": Preset(
-        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "100 ohm"}, _ECR
+        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "100 ohm"},
+        *_ECR,
     ),
     "mtm-ecr-10-kohm": Preset(
-        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "10 kohm"}, _ECR
+        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "10 kohm"},
+        *_ECR,
     ),
     "threshold-counter": Preset(
         {"bandwidth": "1 MHz", "sampling_rate": "1 MHz", "noise": "50 uV"},
