@@ -289,8 +289,7 @@ def contact_probability(
     choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
     gap = choices.gap
     check_realisations(realisations, seed)
-    point = force, speed, temperature, film_formula
-    table = film_in_si(rollers, oil, *point, choices, slip)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     found = table[FILM_VARIABLES]
     if "line" in choices.models:
         contact = ensemble(table, rollers, realisations, seed, slip, gap)
@@ -304,8 +303,9 @@ def contact_probability(
         # Imports of the sensitivity study are slow.
         from lube.calculator.bands import assumed_limits
 
-        given = (force, speed, temperature), choices, bands, np.ravel(film_formula)[0]
-        found = found.assign(assumed_limits(rollers, oil, *given, slip, seed))
+        point, formula = (force, speed, temperature), np.ravel(film_formula)[0]
+        limits = assumed_limits(rollers, oil, point, choices, bands, formula, slip, seed)
+        found = found.assign(limits)
     return with_remarks(found, table, rollers)
 
 
@@ -313,13 +313,11 @@ def of_surface(
     table: xr.Dataset, rollers: Rollers, seed: int, gap: Gap, slip: xr.DataArray | float
 ) -> dict[str, xr.DataArray]:
     """Contact of the surface at some films, by the names of `contact_probability`."""
-    given = rollers.lines, rollers.pair.length, table, rollers.layer, seed, gap
-    found = surface_contact(*given, slide_to_roll_ratio=slip)
+    spec, length, layer = rollers.lines, rollers.pair.length, rollers.layer
+    found = surface_contact(spec, length, table, layer, seed, gap, slide_to_roll_ratio=slip)
     found = found.assign(surface_rates(found, table["entrainment_speed"]))
     share = [found[f"breakthrough_probability{end}"] for end in LIMITS]
-    of_pair = surface_prediction(
-        [limit.values for limit in share], revolution_size(rollers.lines, found)
-    )
+    of_pair = surface_prediction([each.values for each in share], revolution_size(spec, found))
     for end, limit in zip(LIMITS[1:], of_pair, strict=True):
         found[f"breakthrough_probability_pair{end}"] = share[0].copy(data=limit)
     return {f"surface_{name}": values for name, values in found.items()}
@@ -439,8 +437,8 @@ def trace(
     rollers.lines.check_width(2.0 * table["contact_half_width"].item(), "force: the contact")
     rollers.lines.check_follows_rolling()
     lines = roughness_batch(rollers.lines, seed, [0])
-    given = rollers.layer, rollers.resistivity, choices.gap
-    found = contact_trace(lines, table, [point], *given)
+    layer, resistivity = rollers.layer, rollers.resistivity
+    found = contact_trace(lines, table, [point], layer, resistivity, choices.gap)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
     return described(found[names].isel(operating_point=0).drop_attrs())
 

@@ -105,8 +105,8 @@ def plan(
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     choices = Choices.of(film_shape, roughness_deformation, "none", "line")
     check_realisations(realisations, seed)
-    point = force, speed, temperature
-    table = film_in_si(rollers, oil, *point, one_name("film_formula", film_formula), choices, slip)
+    formula = one_name("film_formula", film_formula)
+    table = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
     contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
     spec, ratios = rollers.lines, speed_ratios(slip)
     windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
@@ -114,12 +114,13 @@ def plan(
     found = slopes(spec, table, rollers.layer, choices.gap, seed)
     reading = _reading_error(rollers, table, choices.gap, slip, rig, thresholds.values, seed)
     reach = spec.longest_wavelength / spec.spacing
-    motion = ratios, spec.points, reach, 1.0, 0.0
-    ratio = np.array([scatter_ratio(each, *motion) for each in turns.values.ravel().tolist()])
+    records = turns.values.ravel().tolist()
+    ratio = np.array([scatter_ratio(one, ratios, spec.points, reach, 1.0, 0.0) for one in records])
     error = relative_error(found.probability, size, ratio[:, None, None], reading)
-    force, speed, temperature = conditions(*point, rollers.pair.first.radius)
+    radius = rollers.pair.first.radius
+    force, speed, temperature = conditions(force, speed, temperature, radius)
     oils, dims = oil.at(temperature), table["film_thickness"].dims
-    slope = film_by_coefficient(oils, rollers.pair, force, speed, film_formula)
+    slope = film_by_coefficient(oils, rollers.pair, force, speed, formula)
     by_coefficient = slope.transpose(*dims).values.ravel()
     widths = half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
     shape, read = table["film_thickness"].shape, (*thresholds.dims, *dims)

@@ -271,8 +271,7 @@ def required_roughness(
     model = contact_model, film_shape, roughness_deformation
     search = FilmSearch(rollers, share, realisations, seed, *model)
     one = one_name("film_formula", film_formula)
-    point = force, speed, temperature, one
-    film = film_in_si(rollers, oil, *point, search.choices)
+    film = film_in_si(rollers, oil, force, speed, temperature, one, search.choices)
     own = single(film["lambda_ratio"])
 
     def table_at(ratios):
