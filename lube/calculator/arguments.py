@@ -40,6 +40,8 @@ leave out heating at the inlet and starvation; the oil carries the whole load, u
 ``load_sharing`` says otherwise."""
 REALISATIONS = 64
 SEED = 1
+Point = tuple[xr.DataArray, xr.DataArray, xr.DataArray]
+"""Force, speed and temperature."""
 
 
 def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArray:
@@ -111,9 +113,7 @@ def bare_number(name: str, value: object, **limits: float) -> float:
         return bounded(parse_number(value), None, **limits)
 
 
-def conditions(
-    force: Amount, speed: Amount, temperature: Amount, radius: float
-) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+def conditions(force: Amount, speed: Amount, temperature: Amount, radius: float) -> Point:
     """Force in N, speed in rpm and temperature in degC; the radius as for `rotation_speed`."""
     return (
         amount("force", force, "N", above=0.0),

@@ -181,7 +181,7 @@ def _film(columns, rollers, oil, film_formula, choices):
         rotation = entrainment * 60.0 / (2.0 * np.pi * radius)
     formulas = [one_name("film_formula", film_formula)]
     point = columns["force"], rotation, columns["temperature"]
-    table = film_of_oil(oil, own, *point, formulas, **choices)
+    table = film_of_oil(oil, own, point, formulas, **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     return table.assign(force=columns["force"])
 

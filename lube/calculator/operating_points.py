@@ -12,6 +12,7 @@ from lube.calculator.arguments import (
     REALISATIONS,
     SEED,
     Choices,
+    Point,
     bare_number,
     check_realisations,
     conditions,
@@ -114,14 +115,14 @@ def film_in_si(
 
     The arguments are those of `film`, `contact_probability` and `ensemble`.
     """
-    force, speed, temperature = conditions(force, speed, temperature, rollers.pair.first.radius)
+    point = conditions(force, speed, temperature, rollers.pair.first.radius)
     formulas = np.ravel(film_formula).tolist()
     if not formulas or not isinstance(formulas[0], str):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
     model = film_model(rollers, choices or Choices(), slip)
-    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, **model)
+    table = film_of_oil(oil, rollers.pair, point, formulas, **model)
     dims = ("film_formula", "temperature", "speed", "force")
-    table = table.assign_coords(force=force, speed=speed)
+    table = table.assign_coords(force=point[0], speed=point[1])
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
 
@@ -141,15 +142,10 @@ def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any
 
 
 def film_of_oil(
-    oil: Oil,
-    pair: RollerPair,
-    force: xr.DataArray,
-    speed: xr.DataArray,
-    temperature: xr.DataArray,
-    formulas: Sequence[str],
-    **choices: Any,
+    oil: Oil, pair: RollerPair, point: Point, formulas: Sequence[str], **choices: Any
 ) -> xr.Dataset:
-    """Film table with the oil's viscosity; numbers in N, rpm and degC, over any dimensions."""
+    """Film table with the oil's viscosity; the point's numbers are in N, rpm and degC."""
+    force, speed, temperature = point
     properties = oil.at(temperature)
     table = film_at(properties, pair, force, speed, formulas, **choices)
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])

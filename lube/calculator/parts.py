@@ -52,10 +52,7 @@ _TAKEN_BY = {
     "bands": "only contact_probability takes it: it is sampled at each operating point alone",
     "contact_model": "only contact_probability, duty and the required_ functions take it",
     "load_sharing": "only contact_probability and duty take it: the oil carries the whole load",
-    "slide_to_roll_ratio": (
-        "only contact_probability, trace and plan take it: duty points have two surface speeds, "
-        "other answers are for pure rolling"
-    ),
+    "slide_to_roll_ratio": "only contact_probability, trace and plan take it; duty: both speeds",
 }
 """Choices that some functions lack, and which have them."""
 _Function = TypeVar("_Function", bound=Callable)

@@ -129,7 +129,7 @@ def plan(
     answer["breakthrough_probability"] = dims, found.probability.reshape(shape)
     sizes = len(QUANTITIES), *turns.shape, *thresholds.shape, *shape
     answer["half_width"] = ("quantity", *turns.dims, *read), widths.reshape(sizes)
-    answer["reading_error"] = read, reading.reshape(*thresholds.shape, *shape)
+    answer["reading_error"] = read, reading.reshape((*thresholds.shape, *shape))
     return with_remarks(answer, table, rollers)
 
 

@@ -13,6 +13,7 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
+    Choices,
     amount,
     one_name,
     rotation_speed,
@@ -73,7 +74,8 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    search = FilmSearch(rollers, share, realisations, seed, contact_model)
+    choices = Choices.of("flat", "none", "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
     return _labelled(search.films(half_width))
@@ -124,8 +126,8 @@ def required_viscosity(
         speeds = rotation * factors, "rpm"
         return film_in_si(rollers, oil, force, speeds, temperature, one, choices)
 
-    model = contact_model, film_shape, roughness_deformation
-    search = FilmSearch(rollers, share, realisations, seed, *model)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
     properties = oil.at(amount("temperature", temperature, "degC"))
@@ -174,8 +176,8 @@ def required_speed(
     def table(speeds, choices):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
 
-    model = contact_model, film_shape, roughness_deformation
-    search = FilmSearch(rollers, share, realisations, seed, *model)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -221,8 +223,8 @@ def required_temperature(
     def table(temperatures, choices):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
 
-    model = contact_model, film_shape, roughness_deformation
-    search = FilmSearch(rollers, share, realisations, seed, *model)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -268,8 +270,8 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    model = contact_model, film_shape, roughness_deformation
-    search = FilmSearch(rollers, share, realisations, seed, *model)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     one = one_name("film_formula", film_formula)
     film = film_in_si(rollers, oil, force, speed, temperature, one, search.choices)
     own = single(film["lambda_ratio"])

@@ -31,12 +31,16 @@ _MEASURED = (
     "choices of the model being open:"
 )
 _HEAD = "uncertain", "the study takes", "range or choices", "source: what is known, and why"
-_UNITS = {"force": "N", "speed": "r/min", "temperature": "°C"}
-_OVER_LEVELS = (*_UNITS, "viscosity", "pressure_viscosity_coefficient")
-"""Factors of which a study has several values, from the first level to the last."""
-_OF_LINES = dict.fromkeys(("longest_wavelength", "shortest_wavelength"), "m") | dict.fromkeys(
-    ("hurst_exponent", "skewness", "kurtosis"), ""
-)
+_LEVELS = {"force": "N", "speed": "rpm", "temperature": "degC"}
+_OF_OIL = {"viscosity": "m^2/s", "pressure_viscosity_coefficient": "1/Pa"}
+_LENGTHS = (
+    "rms_roughness first_rms_roughness second_rms_roughness longest_wavelength shortest_wavelength "
+    "critical_thickness"
+).split()
+_UNITS = _LEVELS | _OF_OIL | dict.fromkeys(_LENGTHS, "m")
+_UNITS |= {"young_modulus": "Pa", "shear_strength": "Pa"}
+_UNITS |= {"hurst_exponent": "", "skewness": "", "kurtosis": ""}
+"""Units of the quantities that may be uncertain."""
 _WORDS = """
 ## What this does to the probability
 
@@ -75,7 +79,7 @@ def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None)
     factors = [name for name in shown["factor"].values.tolist() if name != SEED]
     strength = shown["elementary_effect"].sel(factor=factors).mean("point")
     conditions = [
-        ", ".join(f"{one[name].item():.4g} {unit}" for name, unit in _UNITS.items())
+        ", ".join(with_unit(one[name].item(), unit, 4) for name, unit in _LEVELS.items())
         for one in (points.isel(point=order[place]) for place in places)
     ]
     rows, is_told, taken = [], above_noise(shown, "elementary_effect"), values_taken(study)
@@ -107,34 +111,24 @@ def values_taken(study: Study) -> dict[str, str]:
         By the name of the factor; the properties of oils are those of the first lubricant at the
         lowest and the highest temperature.
     """
-    grid, layer, lines = study.operating_grid, study.boundary_layer, study.line_spec.lines
-    rms, rollers = study.line_spec.rms_height, (study.rollers.first, study.rollers.second)
-    warmth = np.array(grid.temperature)[[0, -1]]
-    oil = lubricant_table(study.lubricants[:1], np.unique(warmth)).isel(lubricant=0)
+    ends = {name: np.array(getattr(study.operating_grid, name))[[0, -1]] for name in _LEVELS}
+    oil = lubricant_table(study.lubricants[:1], np.unique(ends["temperature"])).isel(lubricant=0)
+    rms = study.line_spec.rms_height
     numbers = {
-        "viscosity": (oil["kinematic_viscosity"].values, "m^2/s"),
-        "pressure_viscosity_coefficient": (oil["pressure_viscosity_coefficient"].values, "1/Pa"),
-        "temperature": (warmth, "degC"),
-        "force": ((grid.force[0], grid.force[-1]), "N"),
-        "speed": ((grid.speed[0], grid.speed[-1]), "rpm"),
-        "young_modulus": ([roller.young_modulus for roller in rollers], "Pa"),
-        "rms_roughness": (rms, "m"),
-        "first_rms_roughness": (rms[:1], "m"),
-        "second_rms_roughness": (rms[1:], "m"),
-        "critical_thickness": ([layer.critical_thickness], "m"),
-        "shear_strength": ([layer.shear_strength], "Pa"),
+        "rms_roughness": rms,
+        "first_rms_roughness": rms[:1],
+        "second_rms_roughness": rms[1:],
     }
-    for name, unit in _OF_LINES.items():
-        numbers[name] = [getattr(line, name) for line in lines], unit
-    own = {
-        "pressure_viscosity_definition": FORMULA_DEFINITION,
-        "film_formula": study.film_formulas[0],
-        "contact_model": ", ".join(study.contact_model),
-    }
+    numbers |= ends | {"viscosity": oil["kinematic_viscosity"].values}
+    numbers["pressure_viscosity_coefficient"] = oil["pressure_viscosity_coefficient"].values
+    parts = *study.line_spec.lines, study.rollers.first, study.rollers.second, study.boundary_layer
+    own = {"film_formula": study.film_formulas[0], "contact_model": ", ".join(study.contact_model)}
+    own["pressure_viscosity_definition"] = FORMULA_DEFINITION
     words = {name: own.get(name) or getattr(study, name) for name in CHOICES}
-    for name, (values, unit) in numbers.items():
+    for name, unit in _UNITS.items():
+        values = numbers.get(name, [getattr(one, name) for one in parts if hasattr(one, name)])
         each = [with_unit(one, unit, 3) for one in values if one is not None]
-        words[name] = (" to " if name in _OVER_LEVELS else " and ").join(dict.fromkeys(each))
+        words[name] = (" to " if name in _LEVELS | _OF_OIL else " and ").join(dict.fromkeys(each))
     return words
 
 

@@ -37,21 +37,21 @@ class Preset(NamedTuple):
     reading: str = "threshold"
 
 
-_ECR = (
-    "PCS Instruments, data sheet of the option ECR of the mini traction machine MTM2: some 15 mV "
-    "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm; range assumed",
-    "mean voltage",
-)
+def _ecr(series_resistance):
+    """Return the settings of an ECR meter."""
+    known = {"bias_voltage": "15 mV", "amplifier_range": "30 mV"}
+    source = (
+        "PCS Instruments, data sheet of the option ECR of the mini traction machine MTM2: some "
+        "15 mV over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm; "
+        "range assumed"
+    )
+    return Preset(known | {"series_resistance": series_resistance}, source, "mean voltage")
+
+
 KnownRig = Literal["mtm-ecr", "mtm-ecr-10-kohm", "threshold-counter", "impedance-bridge"]
 PRESETS: dict[KnownRig, Preset] = {
-    "mtm-ecr": Preset(
-        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "100 ohm"},
-        *_ECR,
-    ),
-    "mtm-ecr-10-kohm": Preset(
-        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "10 kohm"},
-        *_ECR,
-    ),
+    "mtm-ecr": _ecr("100 ohm"),
+    "mtm-ecr-10-kohm": _ecr("10 kohm"),
     "threshold-counter": Preset(
         {"bandwidth": "1 MHz", "sampling_rate": "1 MHz", "noise": "50 uV"},
         "a fast comparator at the paper's threshold of 100 ohm; bandwidth and noise assumed",
