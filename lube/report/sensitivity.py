@@ -114,12 +114,8 @@ def values_taken(study: Study) -> dict[str, str]:
     ends = {name: np.array(getattr(study.operating_grid, name))[[0, -1]] for name in _LEVELS}
     oil = lubricant_table(study.lubricants[:1], np.unique(ends["temperature"])).isel(lubricant=0)
     rms = study.line_spec.rms_height
-    numbers = {
-        "rms_roughness": rms,
-        "first_rms_roughness": rms[:1],
-        "second_rms_roughness": rms[1:],
-    }
-    numbers |= ends | {"viscosity": oil["kinematic_viscosity"].values}
+    numbers = ends | {"rms_roughness": rms, "first_rms_roughness": rms[:1]}
+    numbers |= {"second_rms_roughness": rms[1:], "viscosity": oil["kinematic_viscosity"].values}
     numbers["pressure_viscosity_coefficient"] = oil["pressure_viscosity_coefficient"].values
     parts = *study.line_spec.lines, study.rollers.first, study.rollers.second, study.boundary_layer
     own = {"film_formula": study.film_formulas[0], "contact_model": ", ".join(study.contact_model)}
