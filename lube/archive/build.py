@@ -20,7 +20,7 @@ from lube.archive.crate import CATALOGUE, crate_metadata
 from lube.errors import DataError, StudyError, shown
 from lube.pipeline.figures import wrong_figures
 from lube.pipeline.study_files import origin, products
-from lube.report import SUMMARISED
+from lube.report import ON_ASSUMPTIONS, SUMMARISED
 from lube.report.pages import render
 from lube.report.summary import facts, findings
 from lube.schema import SUMMARIES
@@ -100,10 +100,9 @@ def archive_contents(
     results = Path(results)
     written = written_files(study, path)
     study_file = next(iter(written))
-    summarised = {
-        kind: load(results / f"{kind}.nc", kind) for kind in SUMMARISED if study.has(kind)
-    }
     kinds = study.datasets_in(results)
+    shown = [kind for kind in (*SUMMARISED, *ON_ASSUMPTIONS) if kind in kinds]
+    summarised = {kind: load(results / f"{kind}.nc", kind) for kind in shown}
     drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     return {
         **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds},
@@ -221,13 +220,19 @@ def archive_page(study: Study, study_file: str, kinds: list[str], results: Datas
     study, study_file, kinds
         As in `values_text`.
     results : dict of str to xarray.Dataset
-        Its datasets `lube.report.SUMMARISED`, by name.
+        Its datasets `lube.report.SUMMARISED` and `lube.report.ON_ASSUMPTIONS`, by name.
 
     Returns
     -------
     str
         Markdown.
     """
+    effects = ""
+    if "sensitivity" in kinds:
+        # Imports of the sensitivity study are slow.
+        from lube.report.sensitivity import rests_on
+
+        effects = rests_on(study, *map(results.get, ON_ASSUMPTIONS))
     return render(
         "archive.md",
         study=study,
@@ -239,6 +244,7 @@ def archive_page(study: Study, study_file: str, kinds: list[str], results: Datas
         changed=changed_code(),
         facts=facts(study, results["lubricant"]),
         findings=findings(study, results),
+        rests_on=effects,
     )
 
 

@@ -38,6 +38,7 @@ _OF_NO_FILE = {
     "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
     "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
     "whole_surface_probability": (f"breakthrough probability of the surface {_WHOLE}", "1"),
+    "whole_surface_rate": (f"breakthroughs per time on the surface {_WHOLE}", "s-1"),
     "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
 }
 """Long name and SI unit of the variables that no file has."""
@@ -59,7 +60,8 @@ _WORDS |= {
 
 _WORDS |= {
     f"surface_{name}": (f"{row.long_name}, on the surface", row.units)
-    for name, row in FILES["areal"].items()
+    for kind in ("contact", "tail", "areal")
+    for name, row in FILES[kind].items()
 }
 _FORMULAS = {
     "asperity_load_share": LOAD_SHARES,

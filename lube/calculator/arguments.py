@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypedDict, get_args
+from typing import TypedDict, get_args
 
 import numpy as np
 import xarray as xr
@@ -11,7 +11,8 @@ from lube.errors import LubeError, StudyError, located, right_one, shown
 from lube.grid.gap import PLAIN, Gap
 from lube.study.field_types import bounded
 from lube.study.rig_settings import RIG_REALISATIONS
-from lube.study.study import CONTACT_MODELS, Study
+from lube.study.study import Study
+from lube.types import Amount, ContactModel, FilmShape, LoadSharing, RoughnessDeformation
 from lube.units import convert, parse_number, parse_quantity
 
 FORMULA = "pan-hamrock"
@@ -22,9 +23,9 @@ class Model(TypedDict):
     """Arguments that choose the model of an answer."""
 
     film_formula: str
-    film_shape: str
-    roughness_deformation: str
-    contact_model: str
+    film_shape: FilmShape
+    roughness_deformation: RoughnessDeformation
+    contact_model: ContactModel
 
 
 COMPLETE: Model = {
@@ -39,9 +40,8 @@ leave out heating at the inlet and starvation; the oil carries the whole load, u
 ``load_sharing`` says otherwise."""
 REALISATIONS = 64
 SEED = 1
-
-Amount = str | Sequence[str] | tuple[Any, str] | Any
-"""``"800 N"``, ``["400 N", "800 N"]``, ``([400, 800], "N")``, or a quantity of pint."""
+Point = tuple[xr.DataArray, xr.DataArray, xr.DataArray]
+"""Force, speed and temperature."""
 
 
 def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArray:
@@ -113,9 +113,7 @@ def bare_number(name: str, value: object, **limits: float) -> float:
         return bounded(parse_number(value), None, **limits)
 
 
-def conditions(
-    force: Amount, speed: Amount, temperature: Amount, radius: float
-) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+def conditions(force: Amount, speed: Amount, temperature: Amount, radius: float) -> Point:
     """Force in N, speed in rpm and temperature in degC; the radius as for `rotation_speed`."""
     return (
         amount("force", force, "N", above=0.0),
@@ -171,16 +169,16 @@ class Choices:
     """
 
     gap: Gap = PLAIN
-    models: tuple[str, ...] = ("line",)
-    load_sharing: str = "none"
+    models: tuple[ContactModel, ...] = ("line",)
+    load_sharing: LoadSharing = "none"
 
     @classmethod
     def of(
         cls,
-        film_shape: str,
-        roughness_deformation: str,
-        load_sharing: str,
-        contact_model: str | Sequence[str],
+        film_shape: FilmShape,
+        roughness_deformation: RoughnessDeformation,
+        load_sharing: LoadSharing,
+        contact_model: ContactModel | Sequence[ContactModel],
     ) -> "Choices":
         """Choose by the values of a study's keys.
 
@@ -194,7 +192,7 @@ class Choices:
             _check_choice(name, value, get_args(Study.model_fields[name].annotation))
         models = tuple(np.ravel(contact_model).tolist())
         for model in models or [contact_model]:
-            _check_choice("contact_model", model, CONTACT_MODELS)
+            _check_choice("contact_model", model, get_args(ContactModel))
         return cls(Gap(**gap), models, load_sharing)
 
 

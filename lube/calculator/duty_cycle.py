@@ -34,7 +34,7 @@ from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
-from lube.types import File
+from lube.types import ContactModel, File, FilmShape, LoadSharing, RoughnessDeformation
 
 _COLUMNS = {
     "force": "N",
@@ -60,10 +60,10 @@ def duty(
     oil: Oil,
     *,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    load_sharing: str = "none",
-    contact_model: str | Sequence[str] = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    load_sharing: LoadSharing = "none",
+    contact_model: ContactModel | Sequence[ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -97,9 +97,10 @@ def duty(
         metal contact, counted; ``whole_tail_probability``, the same by importance sampling; and
         ``whole_tail_rate``, breakthroughs per hour; each with ``_lower`` and ``_upper``. These
         limits are those of the mean over pairs of rollers. All points have the same pairs, so the
-        whole cycle is computed on each pair first. For the surface it is
-        ``whole_surface_probability``, with limits as wide as if the errors at all points were the
-        same. The attribute ``remarks`` is as in `lube.contact_probability`.
+        whole cycle is computed on each pair first. For the surface they are
+        ``whole_surface_probability`` and ``whole_surface_rate``, with limits as wide as if the
+        errors at all points were the same. The attribute ``remarks`` is as in
+        `lube.contact_probability`.
 
     Raises
     ------
@@ -136,9 +137,9 @@ def duty(
         parts = joined(table, contact, on_pairs)
     if "surface" in choices.models:
         parts = parts.assign(of_surface(table, rollers, seed, gap, slip))
-        for end in LIMITS:
-            of_points = parts[f"surface_breakthrough_probability{end}"]
-            whole[f"whole_surface_probability{end}"] = (of_points * share).sum(skipna=False)
+        for name in [f"{kind}{end}" for kind in ("probability", "rate") for end in LIMITS]:
+            of_points = parts[f"surface_breakthrough_{name}"]
+            whole[f"whole_surface_{name}"] = (of_points * share).sum(skipna=False)
     found = columns | {"share": share} | dict(parts.data_vars) | whole
     found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers)
     for name in labels.keys() & found.variables.keys():
@@ -180,7 +181,7 @@ def _film(columns, rollers, oil, film_formula, choices):
         rotation = entrainment * 60.0 / (2.0 * np.pi * radius)
     formulas = [one_name("film_formula", film_formula)]
     point = columns["force"], rotation, columns["temperature"]
-    table = film_of_oil(oil, own, *point, formulas, **choices)
+    table = film_of_oil(oil, own, point, formulas, **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     return table.assign(force=columns["force"])
 

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from lube.calculator.arguments import Choices, bare_number, check_realisations, one_name
+from lube.calculator.arguments import Choices, bare_number, check_realisations
+from lube.calculator.parts import Rollers
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
-from lube.errors import RangeError, StudyError
+from lube.errors import RangeError, StudyError, shown
 from lube.grid.gap import PLAIN
 from lube.physics.excursions import expected_contacts
 from lube.schema import LIMITS
@@ -49,19 +50,17 @@ class FilmSearch:
         Share of time with contact, between 0 and 1.
     realisations, seed : int
         As in `lube.contact_probability`.
-    contact_model : str
-        A single contact model.
-    shape, deformation : str
-        `film_shape` and `roughness_deformation` as in `lube.contact_probability`; the oil carries
-        the whole load.
+    choices : Choices
+        With a single contact model; the oil carries the whole load.
     """
 
     def __init__(
-        self, rollers, share, realisations, seed, contact_model, shape="flat", deformation="none"
-    ):
-        model = one_name("contact_model", contact_model)
-        self.choices = Choices.of(shape, deformation, "none", model)
-        self._share, self._gap = bare_number("share", share, above=0.0, below=1.0), self.choices.gap
+        self, rollers: Rollers, share: float, realisations: int, seed: int, choices: Choices
+    ) -> None:
+        if len(choices.models) > 1:
+            raise StudyError(f"contact_model: got {shown(list(choices.models))}, need one name")
+        self._share, self._gap = bare_number("share", share, above=0.0, below=1.0), choices.gap
+        self.choices = choices
         self._on_surface = "surface" in self.choices.models
         self._realisations = check_realisations(realisations, seed)
         self._rollers, self._seed = rollers, seed

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 import xarray as xr
 
 from lube.calculator.answers import Answer, variable_of
-from lube.calculator.arguments import FORMULA, Amount, amount, conditions, single
+from lube.calculator.arguments import FORMULA, amount, conditions, single
 from lube.calculator.operating_points import film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.grid.films import FilmGroups
 from lube.grid.indicators import indicators as published
 from lube.physics.indicators import viscosity_ratio
+from lube.types import Amount, OneAmount
 
 
 @with_parts
@@ -22,7 +23,7 @@ def indicators(
     temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
-    pitch_diameter: Amount | None = None,
+    pitch_diameter: OneAmount | None = None,
 ) -> Answer:
     """Find indicators of lubrication by their published formulas, and the rolling resistance.
 

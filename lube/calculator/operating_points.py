@@ -11,8 +11,8 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
-    Amount,
     Choices,
+    Point,
     bare_number,
     check_realisations,
     conditions,
@@ -29,14 +29,17 @@ from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.plausibility import remarks
-from lube.schema import OPERATING_DIMS, POINT_DIMS
+from lube.inference.surface_scatter import revolution_size, surface_prediction
+from lube.schema import LIMITS, OPERATING_DIMS, POINT_DIMS
 from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
-from lube.stages.tail import pair_limits, pair_probabilities
+from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.stages.trace import contact_trace
 from lube.study.oil_properties import lubricant_table
+from lube.study.rollers import RollerPair
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
+from lube.types import Amount, ContactModel, FilmShape, LoadSharing, OneAmount, RoughnessDeformation
 
 FILM_VARIABLES = (
     "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
@@ -112,14 +115,14 @@ def film_in_si(
 
     The arguments are those of `film`, `contact_probability` and `ensemble`.
     """
-    force, speed, temperature = conditions(force, speed, temperature, rollers.pair.first.radius)
+    point = conditions(force, speed, temperature, rollers.pair.first.radius)
     formulas = np.ravel(film_formula).tolist()
     if not formulas or not isinstance(formulas[0], str):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
     model = film_model(rollers, choices or Choices(), slip)
-    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, **model)
+    table = film_of_oil(oil, rollers.pair, point, formulas, **model)
     dims = ("film_formula", "temperature", "speed", "force")
-    table = table.assign_coords(force=force, speed=speed)
+    table = table.assign_coords(force=point[0], speed=point[1])
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
 
@@ -138,8 +141,11 @@ def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any
     }
 
 
-def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr.Dataset:
-    """Film table with the oil's viscosity; numbers in N, rpm and degC, over any dimensions."""
+def film_of_oil(
+    oil: Oil, pair: RollerPair, point: Point, formulas: Sequence[str], **choices: Any
+) -> xr.Dataset:
+    """Film table with the oil's viscosity; the point's numbers are in N, rpm and degC."""
+    force, speed, temperature = point
     properties = oil.at(temperature)
     table = film_at(properties, pair, force, speed, formulas, **choices)
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
@@ -175,11 +181,11 @@ def contact_probability(
     temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    load_sharing: str = "none",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
-    contact_model: str | Sequence[str] = "line",
+    contact_model: ContactModel | Sequence[ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,
@@ -250,9 +256,13 @@ def contact_probability(
         ``surface_breakthroughs`` and ``surface_contacts`` at any moment, each with ``_lower`` and
         ``_upper``. By theory: ``surface_load_share``, the share of the load that their asperities
         would carry; ``surface_pair_deviation``, the standard deviation of the share of
-        one pair of rollers in a revolution; ``surface_passage_width``, over which the rollers move
+        one pair of rollers in a revolution of pure rolling, and
+        ``surface_breakthrough_probability_pair_lower`` and ``_pair_upper``, between which this
+        share lies in 95 % of cases; ``surface_passage_width``, over which the rollers move
         while a contact is in the strip; and, if the oil does not deform the roughness,
-        ``surface_expected_breakthroughs`` and ``surface_expected_contacts``.
+        ``surface_expected_breakthroughs`` and ``surface_expected_contacts``. From numbers and
+        passage: ``surface_breakthrough_rate``, per hour, with ``_lower`` and ``_upper``, and
+        ``surface_breakthrough_duration``.
 
     Raises
     ------
@@ -275,8 +285,7 @@ def contact_probability(
     choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
     gap = choices.gap
     check_realisations(realisations, seed)
-    point = force, speed, temperature, film_formula
-    table = film_in_si(rollers, oil, *point, choices, slip)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     found = table[FILM_VARIABLES]
     if "line" in choices.models:
         contact = ensemble(table, rollers, realisations, seed, slip, gap)
@@ -290,8 +299,9 @@ def contact_probability(
         # Imports of the sensitivity study are slow.
         from lube.calculator.bands import assumed_limits
 
-        given = (force, speed, temperature), choices, bands, np.ravel(film_formula)[0]
-        found = found.assign(assumed_limits(rollers, oil, *given, slip, seed))
+        point, formula = (force, speed, temperature), np.ravel(film_formula)[0]
+        limits = assumed_limits(rollers, oil, point, choices, bands, formula, slip, seed)
+        found = found.assign(limits)
     return with_remarks(found, table, rollers)
 
 
@@ -299,8 +309,13 @@ def of_surface(
     table: xr.Dataset, rollers: Rollers, seed: int, gap: Gap, slip: xr.DataArray | float
 ) -> dict[str, xr.DataArray]:
     """Contact of the surface at some films, by the names of `contact_probability`."""
-    given = rollers.lines, rollers.pair.length, table, rollers.layer, seed, gap
-    found = surface_contact(*given, slide_to_roll_ratio=slip)
+    spec, length, layer = rollers.lines, rollers.pair.length, rollers.layer
+    found = surface_contact(spec, length, table, layer, seed, gap, slide_to_roll_ratio=slip)
+    found = found.assign(surface_rates(found, table["entrainment_speed"]))
+    share = [found[f"breakthrough_probability{end}"] for end in LIMITS]
+    of_pair = surface_prediction([each.values for each in share], revolution_size(spec, found))
+    for end, limit in zip(LIMITS[1:], of_pair, strict=True):
+        found[f"breakthrough_probability_pair{end}"] = share[0].copy(data=limit)
     return {f"surface_{name}": values for name, values in found.items()}
 
 
@@ -372,11 +387,13 @@ def ensemble(
 def trace(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    speed: str,
-    temperature: str,
+    force: OneAmount,
+    speed: OneAmount,
+    temperature: OneAmount,
     *,
     film_formula: str = FORMULA,
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
     slide_to_roll_ratio: float = 0.0,
     seed: int = SEED,
 ) -> Answer:
@@ -386,7 +403,7 @@ def trace(
     ----------
     rollers, oil, force, speed, temperature, film_formula
         As in `film`, one value of each.
-    slide_to_roll_ratio, seed
+    film_shape, roughness_deformation, slide_to_roll_ratio, seed
         As in `contact_probability`; the trace is that of realisation 0.
 
     Returns
@@ -408,19 +425,24 @@ def trace(
     '120 ms'
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
+    choices = Choices.of(film_shape, roughness_deformation, "none", "line")
     one = _one_point(rollers, oil, force, speed, temperature)
-    table = film_table(*one, [one_name("film_formula", film_formula)])
+    model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}
+    table = film_table(*one, [one_name("film_formula", film_formula)], **model)
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     rollers.lines.check_width(2.0 * table["contact_half_width"].item(), "force: the contact")
     rollers.lines.check_follows_rolling()
     lines = roughness_batch(rollers.lines, seed, [0])
-    found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
+    layer, resistivity = rollers.layer, rollers.resistivity
+    found = contact_trace(lines, table, [point], layer, resistivity, choices.gap)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
     return described(found[names].isel(operating_point=0).drop_attrs())
 
 
 @with_parts
-def profile(rollers: Rollers, oil: Oil, force: str, speed: str, temperature: str) -> Answer:
+def profile(
+    rollers: Rollers, oil: Oil, force: OneAmount, speed: OneAmount, temperature: OneAmount
+) -> Answer:
     """Pressure and film across the contact, from Reynolds' equation.
 
     Parameters

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import Amount, amount
+from lube.calculator.arguments import amount
 from lube.errors import LubeError, RecordError, StudyError, located, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.study.field_types import validate
@@ -32,7 +32,7 @@ from lube.study.rollers import (
 from lube.study.viscosity_checks import check_points
 from lube.study.viscosity_points import read_viscosity_csv
 from lube.threads import progress_bars
-from lube.types import File
+from lube.types import Amount, File
 from lube.units import parse_quantity
 
 _HEIGHT_STEP = "1 pm"
@@ -48,6 +48,13 @@ _MODELS = (
 """Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
 _LENGTHS = ("longest_wavelength", "shortest_wavelength")
 _LAYER = ("critical_thickness", "shear_strength")
+_TAKEN_BY = {
+    "bands": "only contact_probability takes it: it is sampled at each operating point alone",
+    "contact_model": "only contact_probability, duty and the required_ functions take it",
+    "load_sharing": "only contact_probability and duty take it: the oil carries the whole load",
+    "slide_to_roll_ratio": "only contact_probability, trace and plan take it; duty: both speeds",
+}
+"""Choices that some functions lack, and which have them."""
 _Function = TypeVar("_Function", bound=Callable)
 
 
@@ -78,6 +85,8 @@ def with_parts(function: _Function) -> _Function:
 
 def _meant(name, signature):
     """Name the arguments that were probably meant: those that contain the name, or the nearest."""
+    if name in _TAKEN_BY:
+        return _TAKEN_BY[name]
     names = [each for each in signature.parameters if each != "self"]
     longer = [each for each in names if name in each]
     return f"did you mean {' or '.join(longer)}?" if longer else right_one(name, names)

@@ -1,5 +1,7 @@
 """What a record at some operating points would tell."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
@@ -8,14 +10,12 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
-    Amount,
     Choices,
     amount,
     bare_number,
     check_realisations,
     conditions,
     one_name,
-    single,
 )
 from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
@@ -32,11 +32,12 @@ from lube.inference.planning import (
     slopes,
 )
 from lube.physics.electrical import film_capacitance
-from lube.rig.readings import read_shares
+from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import Revolution
 from lube.statistics.one_pair import scatter_ratio
-from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, Rig
+from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.surfaces.synthetic import draw_realisation
+from lube.types import Amount, FilmShape, RoughnessDeformation
 
 
 @with_parts
@@ -48,12 +49,12 @@ def plan(
     temperature: Amount,
     *,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
     slide_to_roll_ratio: float = 0.0,
-    turns: float = 1.0,
-    rig: str | None = None,
-    threshold: str = "100 ohm",
+    turns: float | Sequence[float] = 1.0,
+    rig: KnownRig | None = None,
+    threshold: Amount = "100 ohm",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -68,21 +69,23 @@ def plan(
         As in `lube.film`.
     film_formula, film_shape, roughness_deformation, slide_to_roll_ratio, realisations, seed
         As in `lube.contact_probability`; one film formula.
-    turns : float, optional
+    turns : float or sequence of float, optional
         Length of the record, revolutions of the roller with the faster surface. Longer records of
         equal rollers in pure rolling tell no more than one revolution.
     rig : str, optional
         A known rig, such as ``"mtm-ecr"``, whose error in reading the share of a revolution is
         added. By default the share is read exactly.
-    threshold : str, optional
-        Resistance below which that rig shows contact.
+    threshold : str, sequence of str or tuple, optional
+        Resistance below which that rig shows contact. An ECR meter shows the mean voltage, which
+        depends on no threshold.
 
     Returns
     -------
     Answer
         The variables of `lube.film`; ``breakthrough_probability`` by importance sampling;
         ``half_width``, the half-width of the expected interval of each ``quantity`` relative to the
-        quantity, NaN where the record tells less than a factor of two; and ``reading_error``.
+        quantity, NaN where the record tells less than a factor of two; and ``reading_error``. They
+        have the dimensions turns and threshold if several are given.
 
     Raises
     ------
@@ -98,41 +101,51 @@ def plan(
     True
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    turns = bare_number("turns", turns, above=0.0)
-    ohm = single(amount("threshold", threshold, "ohm", above=0.0))
+    turns = amount("turns", (turns, "1"), "1", above=0.0)
+    thresholds = amount("threshold", threshold, "ohm", above=0.0)
     choices = Choices.of(film_shape, roughness_deformation, "none", "line")
     check_realisations(realisations, seed)
-    point = force, speed, temperature
-    table = film_in_si(rollers, oil, *point, one_name("film_formula", film_formula), choices, slip)
+    formula = one_name("film_formula", film_formula)
+    table = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
     contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
     spec, ratios = rollers.lines, speed_ratios(slip)
     windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
     size = sample_size(contact["breakthrough_probability"], windows).ravel()
     found = slopes(spec, table, rollers.layer, choices.gap, seed)
-    reading = _reading_error(rollers, table, choices.gap, slip, rig, ohm, seed)
+    reading = _reading_error(rollers, table, choices.gap, slip, rig, thresholds.values, seed)
     reach = spec.longest_wavelength / spec.spacing
-    ratio = scatter_ratio(turns, ratios, spec.points, reach, 1.0, 0.0)
-    error = relative_error(found.probability, size, ratio, reading)
-    *point, temperature = conditions(*point, rollers.pair.first.radius)
+    records = turns.values.ravel().tolist()
+    ratio = np.array([scatter_ratio(one, ratios, spec.points, reach, 1.0, 0.0) for one in records])
+    error = relative_error(found.probability, size, ratio[:, None, None], reading)
+    radius = rollers.pair.first.radius
+    force, speed, temperature = conditions(force, speed, temperature, radius)
     oils, dims = oil.at(temperature), table["film_thickness"].dims
-    slope = film_by_coefficient(oils, rollers.pair, *point, film_formula)
+    slope = film_by_coefficient(oils, rollers.pair, force, speed, formula)
     by_coefficient = slope.transpose(*dims).values.ravel()
-    widths = half_widths(found, by_coefficient, error[None], realisations)
-    shape = table["film_thickness"].shape
+    widths = half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
+    shape, read = table["film_thickness"].shape, (*thresholds.dims, *dims)
     answer = table[FILM_VARIABLES].assign_coords(quantity=list(QUANTITIES))
+    answer = answer.assign_coords(turns.coords).assign_coords(thresholds.coords)
     answer["breakthrough_probability"] = dims, found.probability.reshape(shape)
-    answer["half_width"] = ("quantity", *dims), widths.reshape(len(QUANTITIES), *shape)
-    answer["reading_error"] = dims, np.broadcast_to(reading, error.shape).reshape(shape)
+    sizes = len(QUANTITIES), *turns.shape, *thresholds.shape, *shape
+    answer["half_width"] = ("quantity", *turns.dims, *read), widths.reshape(sizes)
+    answer["reading_error"] = read, reading.reshape((*thresholds.shape, *shape))
     return with_remarks(answer, table, rollers)
 
 
-def _reading_error(rollers, table, gap, slip, rig, ohm, seed):
-    """Relative error of the share that a known rig reads of another pair, in one revolution."""
+def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):
+    """Relative error of the share that a known rig reads of another pair, in one revolution.
+
+    Shape (thresholds, points).
+    """
+    film, half_width = table["film_thickness"], table["contact_half_width"]
     if rig is None:
-        return 0.0
+        return np.zeros((thresholds.size, film.size))
     if rig not in PRESETS:
         raise StudyError(f"rig: got {rig!r}, {right_one(rig, PRESETS)}")
-    experiment = Experiment(thresholds={"values": [ohm], "units": "ohm"}, threshold=f"{ohm!r} ohm")
+    levels, place = np.unique(thresholds, return_inverse=True)
+    given = {"values": levels.tolist(), "units": "ohm"}
+    experiment = Experiment(thresholds=given, threshold=f"{levels.item(0)!r} ohm")
     known, spec = Rig(preset=rig), rollers.lines
     if np.isnan(rollers.resistivity):
         raise StudyError(
@@ -141,16 +154,18 @@ def _reading_error(rollers, table, gap, slip, rig, ohm, seed):
         )
     windows = ContactWindows(spec, table, rollers.layer, gap)
     traces = windows.trace(draw_realisation(spec, seed, RIG_REALISATIONS), slip)
-    film, half_width = table["film_thickness"], table["contact_half_width"]
     plates = film_capacitance(film, half_width, rollers.pair.length, known.oil_permittivity)
     steps = spec.spacing / np.maximum(*surface_speeds(table["entrainment_speed"], slip))
     of_points = (each.transpose(*film.dims).values.ravel() for each in xr.broadcast(steps, plates))
-    resistance, errors = rollers.resistivity / spec.spacing, np.empty(len(traces))
+    resistance = rollers.resistivity / spec.spacing
+    errors = np.full((thresholds.size, len(traces)), np.nan)
     for number, (contact, step, plate) in enumerate(zip(traces, *of_points, strict=True)):
         revolution = Revolution(contact, step, resistance, plate, (seed, number))
-        (read, *_), _ = read_shares(revolution.voltage(known), experiment, known)
-        true = np.count_nonzero(contact) / contact.size
-        errors[number] = abs(read / true - 1.0) if true else np.nan
+        shares, by_threshold = read_shares(revolution.voltage(known), experiment, known)
+        read = dict(zip(READINGS, shares, strict=True)) | {"threshold": by_threshold[place.ravel()]}
+        if true := np.count_nonzero(contact) / contact.size:
+            errors[:, number] = np.abs(read[PRESETS[rig].reading] / true - 1.0)
     # Where the simulated rig does not touch, it reads as well as on average.
-    known = errors[np.isfinite(errors)]
-    return np.where(np.isnan(errors), known.mean() if known.size else 0.0, errors)
+    seen = np.isfinite(errors)
+    mean = errors.sum(axis=1, where=seen, keepdims=True) / np.maximum(seen.sum(axis=1)[:, None], 1)
+    return np.where(seen, errors, mean)

@@ -13,6 +13,7 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
+    Choices,
     amount,
     one_name,
     rotation_speed,
@@ -23,6 +24,7 @@ from lube.calculator.operating_points import film_in_si
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.grid.film_profiles import shaped_films
 from lube.schema import values_with_limits
+from lube.types import ContactModel, FilmShape, OneAmount, RoughnessDeformation
 
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
@@ -33,10 +35,10 @@ TEMPERATURES = 241
 @with_parts
 def required_film(
     rollers: Rollers,
-    force: str,
+    force: OneAmount,
     *,
     share: float = 0.01,
-    contact_model: str = "line",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -46,7 +48,7 @@ def required_film(
     ----------
     rollers : Rollers
         The two rollers.
-    force : str
+    force : str, tuple or pint.Quantity
         Normal force, such as ``"800 N"``; it sets the contact width.
     share : float, optional
         Largest breakthrough probability allowed; 0.01 is one per cent.
@@ -72,7 +74,8 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    search = FilmSearch(rollers, share, realisations, seed, contact_model)
+    choices = Choices.of("flat", "none", "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
     return _labelled(search.films(half_width))
@@ -82,15 +85,15 @@ def required_film(
 def required_viscosity(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    speed: str,
-    temperature: str,
+    force: OneAmount,
+    speed: OneAmount,
+    temperature: OneAmount,
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    contact_model: str = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -123,8 +126,8 @@ def required_viscosity(
         speeds = rotation * factors, "rpm"
         return film_in_si(rollers, oil, force, speeds, temperature, one, choices)
 
-    model = contact_model, film_shape, roughness_deformation
-    search = FilmSearch(rollers, share, realisations, seed, *model)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
     properties = oil.at(amount("temperature", temperature, "degC"))
@@ -137,14 +140,14 @@ def required_viscosity(
 def required_speed(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    temperature: str,
+    force: OneAmount,
+    temperature: OneAmount,
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    contact_model: str = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -173,8 +176,8 @@ def required_speed(
     def table(speeds, choices):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
 
-    model = contact_model, film_shape, roughness_deformation
-    search = FilmSearch(rollers, share, realisations, seed, *model)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -184,14 +187,14 @@ def required_speed(
 def required_temperature(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    speed: str,
+    force: OneAmount,
+    speed: OneAmount,
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    contact_model: str = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -220,8 +223,8 @@ def required_temperature(
     def table(temperatures, choices):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
 
-    model = contact_model, film_shape, roughness_deformation
-    search = FilmSearch(rollers, share, realisations, seed, *model)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -231,15 +234,15 @@ def required_temperature(
 def required_roughness(
     rollers: Rollers,
     oil: Oil,
-    force: str,
-    speed: str,
-    temperature: str,
+    force: OneAmount,
+    speed: OneAmount,
+    temperature: OneAmount,
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
-    film_shape: str = "flat",
-    roughness_deformation: str = "none",
-    contact_model: str = "line",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -267,11 +270,10 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    model = contact_model, film_shape, roughness_deformation
-    search = FilmSearch(rollers, share, realisations, seed, *model)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     one = one_name("film_formula", film_formula)
-    point = force, speed, temperature, one
-    film = film_in_si(rollers, oil, *point, search.choices)
+    film = film_in_si(rollers, oil, force, speed, temperature, one, search.choices)
     own = single(film["lambda_ratio"])
 
     def table_at(ratios):

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from lube.types import FilmShape, RoughnessDeformation
+
 
 @dataclass(frozen=True)
 class Gap:
@@ -18,8 +20,8 @@ class Gap:
         deforms each wave by the linear response of `lube.ehl.response`.
     """
 
-    film_shape: str = "flat"
-    roughness_deformation: str = "none"
+    film_shape: FilmShape = "flat"
+    roughness_deformation: RoughnessDeformation = "none"
 
     @property
     def has_shape(self) -> bool:

@@ -15,7 +15,7 @@ from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_responses
 from lube.inference.at_records import film_at_records
 from lube.inference.record_curves import RecordCurves, curve_offsets
-from lube.inference.surface_scatter import surface_scatter
+from lube.inference.surface_scatter import revolution_size, surface_scatter
 from lube.physics.excursions import expected_contacts
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import contact_curve
@@ -152,13 +152,8 @@ def _sampled(study, films, threads, fewer=1):
 
 def _numbers(study, contact):
     """Probability, its limits, and effective sample size of a revolution, shape (4, ...)."""
-    share, lower, upper = (contact[f"breakthrough_probability{end}"].values for end in LIMITS)
-    perimeter = study.line_spec.points[0] * study.line_spec.spacing
-    deviation = contact["pair_deviation"].values
-    scatters = deviation > 1e-9  # not where contact is certain
-    size = share * (1.0 - share) / np.where(scatters, deviation, 1.0) ** 2
-    windows = perimeter / contact["passage_width"].values
-    return np.stack([share, lower, upper, np.where(scatters, size, windows)])
+    limits = [contact[f"breakthrough_probability{end}"].values for end in LIMITS]
+    return np.stack([*limits, revolution_size(study.line_spec, contact)])
 
 
 def _curve_ratios(study, first):

@@ -5,18 +5,63 @@ the rollers' sizes. Its parts follow from the theory of `lube.contact.pair_scatt
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
 from lube.contact.pair_scatter import RecurringContacts, persistent_part
 from lube.contact.strip_film import COLUMNS, surface_moments, surface_motion
-from lube.contact.surface_strip import strip_films
+from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
-from lube.statistics.one_pair import scatter_ratio
+from lube.statistics.one_pair import prediction_limits, scatter_ratio
 from lube.study.study import Study
-from lube.types import Array
+from lube.surfaces.synthetic import LineSpecLike
+from lube.types import Array, Pair, Values
+
+
+def revolution_size(spec: LineSpecLike, contact: xr.Dataset) -> Array:
+    """Find the effective sample size of a revolution of pure rolling of equal rollers.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines that stand for the surfaces.
+    contact : xarray.Dataset
+        From `lube.contact.surface_strip.surface_contact`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Over the dimensions of `contact`.
+    """
+    names = "breakthrough_probability", "pair_deviation", "passage_width"
+    share, deviation, passage = (contact[name].values for name in names)
+    scatters = deviation > 1e-9  # not where contact is certain
+    size = share * (1.0 - share) / np.where(scatters, deviation, 1.0) ** 2
+    return np.where(scatters, size, spec.points[0] * spec.spacing / passage)
+
+
+def surface_prediction(
+    limits: Sequence[Array], size: Values, ratio: Values = 1.0, noise: Values = 0.0
+) -> Pair:
+    """Predict between which limits the share of one pair of surfaces lies in 95 % of cases.
+
+    Parameters
+    ----------
+    limits : sequence of numpy.ndarray
+        Probability of breakthrough of sampled surfaces, and its lower and upper limit.
+    size, ratio, noise
+        As `sample_size`, `ratio` and `noise` of `lube.statistics.one_pair.prediction_limits`.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Lower and upper limit.
+    """
+    noise = np.hypot(noise, 0.25 * (limits[2] - limits[1]))
+    return prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
 
 
 def surface_scatter(

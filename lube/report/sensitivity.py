@@ -4,12 +4,17 @@ import numpy as np
 import xarray as xr
 
 from lube.grid.operating_points import by_contact_model
+from lube.physics.pressure_viscosity import FORMULA_DEFINITION
 from lube.report.key_tables import markdown_table
+from lube.report.markdown import escaped
 from lube.report.pages import percent, rounded
 from lube.schema import POINT_DIMS
 from lube.sensitivity.findings import LEFT, above_noise, narrowing
 from lube.sensitivity.samples import SEED
+from lube.study.oil_properties import lubricant_table
+from lube.study.study import Study
 from lube.study.uncertainty import CHOICES, spoken
+from lube.units import with_unit
 
 _BANDS = {
     "mean": "within the interval of the mean over pairs of rollers",
@@ -25,24 +30,36 @@ _MEASURED = (
     "variance would lessen the standard deviation of the logarithm of the probability most, all "
     "choices of the model being open:"
 )
-_UNITS = {"force": "N", "speed": "r/min", "temperature": "°C"}
+_HEAD = "uncertain", "the study takes", "range or choices", "source: what is known, and why"
+_LEVELS = {"force": "N", "speed": "rpm", "temperature": "degC"}
+_OF_OIL = {"viscosity": "m^2/s", "pressure_viscosity_coefficient": "1/Pa"}
+_LENGTHS = (
+    "rms_roughness first_rms_roughness second_rms_roughness longest_wavelength shortest_wavelength "
+    "critical_thickness"
+).split()
+_UNITS = _LEVELS | _OF_OIL | dict.fromkeys(_LENGTHS, "m")
+_UNITS |= {"young_modulus": "Pa", "shear_strength": "Pa"}
+_UNITS |= {"hurst_exponent": "", "skewness": "", "kurtosis": ""}
+"""Units of the quantities that may be uncertain."""
 _WORDS = """
 ## What this does to the probability
 
 By what the probability of breakthrough is multiplied, or divided, as each quantity goes through its
 range, or a choice is made otherwise: means over random values of all others, at three operating
-points (`sensitivity.nc`). Deviations are from the study's values. A dash is for what is not told
-from the effect of the random numbers.
+points (`sensitivity.nc`). Ranges in per cent or kelvin are deviations from what the study takes. A
+dash is for what is not told from the effect of the random numbers.
 """
 
 
-def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
-    """Tabulate what each factor does to the probability.
+def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None) -> str:
+    """Tabulate what each factor is taken as, and what it does to the probability.
 
     Parameters
     ----------
+    study : Study
+        The study.
     found : xarray.Dataset
-        A ``sensitivity`` dataset.
+        Its ``sensitivity`` dataset.
     records : xarray.Dataset, optional
         A ``record_bands`` dataset, if there are records.
 
@@ -62,22 +79,53 @@ def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
     factors = [name for name in shown["factor"].values.tolist() if name != SEED]
     strength = shown["elementary_effect"].sel(factor=factors).mean("point")
     conditions = [
-        ", ".join(f"{one[name].item():.4g} {unit}" for name, unit in _UNITS.items())
+        ", ".join(with_unit(one[name].item(), unit, 4) for name, unit in _LEVELS.items())
         for one in (points.isel(point=order[place]) for place in places)
     ]
-    rows, is_told = [], above_noise(shown, "elementary_effect")
+    rows, is_told, taken = [], above_noise(shown, "elementary_effect"), values_taken(study)
     for name in strength["factor"].values[np.argsort(-strength.values)]:
         one = shown.sel(factor=name)
         effects = np.exp(one["elementary_effect"].where(is_told.sel(factor=name)).values)
         changes = ["–" if np.isnan(each) else f"{rounded(each):g}" for each in effects]
-        words = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
-        rows.append((spoken(name), *words, *changes))
+        given, source = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
+        rows.append((spoken(name), taken[name], given, escaped(source), *changes))
     ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
     band = (f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True))
-    rows.append(("probability, 5 to 95 % of the samples", "", "", *band))
-    table = markdown_table(("uncertain", "range or choices", "source", *conditions), rows)
+    rows.append(("probability, 5 to 95 % of the samples", "", "", "", *band))
+    table = markdown_table((*_HEAD, *conditions), rows)
     measured = _to_measure(shown, factors, conditions)
     return "\n\n".join([f"{_WORDS}\n{table}", measured, *_explained(records)]) + "\n"
+
+
+def values_taken(study: Study) -> dict[str, str]:
+    """Say which value each quantity and choice of the section ``uncertainty`` has in a study.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+
+    Returns
+    -------
+    dict of str to str
+        By the name of the factor; the properties of oils are those of the first lubricant at the
+        lowest and the highest temperature.
+    """
+    ends = {name: np.array(getattr(study.operating_grid, name))[[0, -1]] for name in _LEVELS}
+    oil = lubricant_table(study.lubricants[:1], np.unique(ends["temperature"])).isel(lubricant=0)
+    rms = study.line_spec.rms_height
+    numbers = ends | {"rms_roughness": rms, "first_rms_roughness": rms[:1]}
+    numbers |= {"second_rms_roughness": rms[1:], "viscosity": oil["kinematic_viscosity"].values}
+    numbers["pressure_viscosity_coefficient"] = oil["pressure_viscosity_coefficient"].values
+    parts = *study.line_spec.lines, study.rollers.first, study.rollers.second, study.boundary_layer
+    own = {"film_formula": study.film_formulas[0], "contact_model": ", ".join(study.contact_model)}
+    own["pressure_viscosity_definition"] = FORMULA_DEFINITION
+    words = {name: own.get(name) or getattr(study, name) for name in CHOICES}
+    for name, unit in _UNITS.items():
+        values = numbers.get(name, [getattr(one, name) for one in parts if hasattr(one, name)])
+        each = [with_unit(one, unit, 3) for one in values if one is not None]
+        words[name] = (" to " if name in _LEVELS | _OF_OIL else " and ").join(dict.fromkeys(each))
+    return words
 
 
 def _explained(records):

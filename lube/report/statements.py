@@ -9,6 +9,7 @@ from lube.report.configuration import at_key
 from lube.study.study import Study
 
 _HEADING = "## In the paper's study\n"
+_EFFECTS = "<!-- effects -->\n"
 
 
 def limits_of(study: Study, paper: Study, text: str) -> str:
@@ -45,8 +46,10 @@ def assumptions_of(study: Study, paper: Study, text: str) -> str:
     Returns
     -------
     str
-        The text, with those lines whose values the study shares with the paper's.
+        The text, with those lines whose values the study shares with the paper's, and without
+        what they do to the probability of the paper's study.
     """
+    text = text.partition(_EFFECTS)[0]
     general, _, table = text.partition(_HEADING)
     values = [one.model_dump(mode="json", by_alias=True) for one in (study, paper)]
 

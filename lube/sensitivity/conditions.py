@@ -23,9 +23,9 @@ from lube.study.uncertainty import Factor, check_uncertainty, deviating_lines
 from lube.types import Array
 
 OIL = (
-    *("dynamic_viscosity", "pressure_viscosity_coefficient"),
-    *("temperature_viscosity_coefficient", "thermal_conductivity"),
-)
+    "dynamic_viscosity pressure_viscosity_coefficient temperature_viscosity_coefficient "
+    "thermal_conductivity"
+).split()
 GAUSSIAN = {"skewness": 0.0, "kurtosis": 3.0}
 """Moments of Gaussian heights."""
 NODES = 500
@@ -102,7 +102,7 @@ class Deviating:
         coldest = max(min(levels) + lower, *(one[0] for one in ranges))
         hottest = min(max(levels) + upper, *(one[1] for one in ranges))
         temperature = np.linspace(coldest, max(hottest, coldest + 1.0), NODES)
-        table = lubricant_table(study.lubricants, temperature)[list(OIL)].drop_attrs()
+        table = lubricant_table(study.lubricants, temperature)[OIL].drop_attrs()
         definitions = study.uncertainty.pressure_viscosity_definition
         slopes = [_slope_ratio(table, each) for each in definitions.choices] if definitions else []
         if slopes:
@@ -264,9 +264,9 @@ def _heights(study):
 
 
 FILM = (
-    *("film_thickness", "contact_half_width", "reduced_modulus"),
-    *("moes_load", "moes_material", "dynamic_viscosity", "lambda_ratio"),
-)
+    "film_thickness contact_half_width reduced_modulus moes_load moes_material dynamic_viscosity "
+    "lambda_ratio"
+).split()
 """Variables of films on which the probability depends."""
 STAND_IN = {"computed": "moes"}
 """Film formulas that stand in for films that are too slow to compute."""
@@ -274,6 +274,6 @@ STAND_IN = {"computed": "moes"}
 
 def joined(films: list[tuple[Array, xr.Dataset]]) -> xr.Dataset:
     """Join the variables `FILM` of films by `Deviating.films`, in the order of the runs."""
-    tables = [film[list(FILM)].broadcast_like(film["film_thickness"]) for _, film in films]
+    tables = [film[FILM].broadcast_like(film["film_thickness"]) for _, film in films]
     table = xr.concat(tables, "run", coords="minimal", compat="override", join="exact")
     return table.isel(run=np.argsort(np.concatenate([runs for runs, _ in films])))

@@ -25,6 +25,7 @@ from lube.contact.ensemble import windows_in
 from lube.contact.surface_strip import SURFACES
 from lube.inference.at_records import model_at_records, study_films_at_records
 from lube.inference.study_shares import levels_named, log_lines
+from lube.inference.surface_scatter import surface_prediction
 from lube.schema import AT_RECORDS, LIMITS, label, model_dependent, values_with_limits, with_dims
 from lube.statistics.confidence import mean_or_nan, probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
@@ -135,9 +136,8 @@ def _of_lines(table):
 def _of_surfaces(table, surfaces):
     """Probability with its limits, and prediction interval, of sampled surfaces."""
     limits = [surfaces[f"breakthrough_probability{limit}"].values for limit in LIMITS]
-    noise = np.hypot(table["share_error"].values, 0.25 * (limits[2] - limits[1]))
     size, ratio = surfaces["sample_size"].values, surfaces["scatter_ratio"].values
-    return limits, prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
+    return limits, surface_prediction(limits, size, ratio, table["share_error"].values)
 
 
 def _judged(table, experiment, sides):

@@ -116,20 +116,41 @@ def _by_model(study, film, lines, areal):
 
 
 def _on_surfaces(study, speed, areal):
-    """Variables of surfaces.
-
-    A contact is counted once, from where it appears in the strip to where it disappears.
-    """
-    perimeter, passage = study.line_spec.points[0] * study.line_spec.spacing, areal["passage_width"]
+    """Variables of surfaces."""
+    perimeter = study.line_spec.points[0] * study.line_spec.spacing
     table = {f"{name}{end}": areal[f"{name}{end}"] for name in _PROBABILITIES for end in LIMITS}
-    for end in LIMITS:
-        table[f"breakthrough_rate{end}"] = areal[f"breakthroughs{end}"] * speed / passage
+    table |= surface_rates(areal, speed)
     turn = perimeter / surface_speeds(speed, areal[_SLIP])[0]
     table["breakthroughs_per_revolution"] = table["breakthrough_rate"] * turn
-    table["breakthrough_duration"] = passage / speed
     areal = _in_pure_rolling(areal)
     passages = perimeter / areal["passage_width"]
     return xr.Dataset(table | _by_groups(areal, passages, perimeter / speed))
+
+
+def surface_rates(surfaces: xr.Dataset, speed: xr.DataArray) -> dict[str, xr.DataArray]:
+    """Compute the rate of breakthroughs on surfaces, and their mean duration.
+
+    A contact is counted once, from where it appears in the strip to where it disappears.
+
+    Parameters
+    ----------
+    surfaces : xarray.Dataset
+        From `lube.contact.surface_strip.surface_contact`.
+    speed : xarray.DataArray
+        Entrainment speed, m/s.
+
+    Returns
+    -------
+    dict of str to xarray.DataArray
+        ``breakthrough_rate`` (1/s) with ``_lower`` and ``_upper``, and ``breakthrough_duration``
+        (s).
+    """
+    passage = surfaces["passage_width"]
+    rates = {
+        f"breakthrough_rate{end}": surfaces[f"breakthroughs{end}"] * speed / passage
+        for end in LIMITS
+    }
+    return rates | {"breakthrough_duration": passage / speed}
 
 
 def _by_groups(found, passages, revolution):

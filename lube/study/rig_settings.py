@@ -44,11 +44,20 @@ _ECR = (
 
 
 def _ecr(resistor):
+    """Return the settings of an ECR meter."""
     settings = {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": resistor}
     return Preset(settings, _ECR, "mean voltage")
 
 
-PRESETS = {
+KnownRig = Literal[
+    "mtm-ecr",
+    "mtm-ecr-10-ohm",
+    "mtm-ecr-1-kohm",
+    "mtm-ecr-10-kohm",
+    "threshold-counter",
+    "impedance-bridge",
+]
+PRESETS: dict[KnownRig, Preset] = {
     "mtm-ecr": _ecr("100 ohm"),
     "mtm-ecr-10-ohm": _ecr("10 ohm"),
     "mtm-ecr-1-kohm": _ecr("1 kohm"),
@@ -69,7 +78,7 @@ PRESETS = {
 class Rig(StrictModel, validate_default=True):
     """Circuit, amplifier and sampling of a simulated twin-disc rig."""
 
-    preset: Literal[tuple(PRESETS)] | None = None
+    preset: KnownRig | None = None
     """a known rig, whose values hold where the study gives none of its own"""
     bias_voltage: Annotated[float, quantity("V", above=0.0)] = "50 mV"
     """voltage across rollers and series resistor"""
@@ -117,7 +126,7 @@ class Rig(StrictModel, validate_default=True):
                 return {**PRESETS[name].settings, **given}
         return given
 
-    def like(self, preset: str) -> "Rig":
+    def like(self, preset: KnownRig) -> "Rig":
         """Return this rig with the settings of a known one."""
         known = Rig(preset=preset).model_dump(include={"preset", *PRESETS[preset].settings})
         return self.model_copy(update=known)

@@ -21,9 +21,8 @@ ROLLERS = ("first", "second")
 ROUGHNESS_KEYS = ("rms_roughness", "ra_roughness", "topography")
 """Keys that give a roller's roughness; a roller has at most one of them."""
 _OF_SPECTRUM = (
-    *("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff"),
-    *("lay_ratio", "lay_angle"),
-)
+    "hurst_exponent roll_off_wavelength long_cutoff short_cutoff lay_ratio lay_angle"
+).split()
 """Keys of its section `roughness` that a measured spectrum replaces."""
 INSULATOR = "insulator"
 """Resistivity of rollers if either does not conduct."""

@@ -31,11 +31,8 @@ from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes
 from lube.study.uncertainty import FilmFormula, Uncertainty
-from lube.types import File
+from lube.types import ContactModel, File, FilmShape, LoadSharing, RoughnessDeformation
 from lube.units import with_unit
-
-CONTACT_MODELS = "line", "surface"
-"""Contact of two roughness lines, or of the surfaces that they stand for."""
 
 
 class Study(StrictModel):
@@ -66,7 +63,7 @@ class Study(StrictModel):
     """names of shipped records, or paths of your own YAML records"""
     film_formulas: tuple[FilmFormula, ...] = Field(min_length=1)
     """names from the registry of film formulas"""
-    film_shape: Literal["flat", "computed"] = "flat"
+    film_shape: FilmShape = "flat"
     """flat, and cut off at the edges of the contact, as in the paper; or computed by Reynolds'
     equation, with the gap outside the contact
     """
@@ -79,18 +76,18 @@ class Study(StrictModel):
     """distance of the oil's meniscus before the line of centres, more than the half-width of the
     contact; without it the contact is fully flooded
     """
-    load_sharing: Literal["none", "iterated"] = "none"
+    load_sharing: LoadSharing = "none"
     """none, the oil carries the whole load, as in the paper; or iterated, the asperities of the
     rollers' surfaces carry a share of it, and the film is that of the rest
     """
     operating_grid: OperatingGrid
     roughness: Roughness
-    roughness_deformation: Literal["none", "computed", "venner-1997"] = "none"
+    roughness_deformation: RoughnessDeformation = "none"
     """none, as in the paper; computed, the oil deforms each wave of the roughness by the linear
     response of Reynolds' equation about the computed film; or venner-1997, the oil flattens long
     waves by the formula of Venner et al., for pure rolling and Moes' load numbers above 20
     """
-    contact_model: tuple[Literal[CONTACT_MODELS], ...] = Field(("line",), min_length=1)
+    contact_model: tuple[ContactModel, ...] = Field(("line",), min_length=1)
     """line, as in the paper; surface, the rough surface that the line stands for, over the length
     of the rollers; or a list of both. Rollers whose ridges run along rolling have no such line, and
     need [surface]

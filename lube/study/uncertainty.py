@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar, get_args
+from typing import Annotated, ClassVar, Generic, Literal, TypeVar, get_args
 
 from pydantic import Field, model_validator
 
@@ -19,6 +19,7 @@ from lube.physics.pressure_viscosity import DEFINITIONS
 from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import ROLLERS
+from lube.types import ContactModel, FilmShape
 from lube.units import parse_number, parse_quantity, with_unit
 
 BEYOND = 5.0
@@ -159,7 +160,7 @@ class OfFormula(Choice[FilmFormula]):
     """Film formulas."""
 
 
-class OfShape(Choice[Literal["flat", "computed"]]):
+class OfShape(Choice[FilmShape]):
     """Shapes of the film."""
 
 
@@ -171,7 +172,7 @@ class OfDeformation(Choice[Literal["none", "computed"]]):
     """Deformations of the roughness."""
 
 
-class OfContact(Choice[Literal["line", "surface"]]):
+class OfContact(Choice[ContactModel]):
     """Contact of lines or of surfaces."""
 
 
@@ -191,7 +192,7 @@ class Factor:
 
     name: str
     group: str
-    given: Any
+    given: _Uncertain | Choice
 
     @property
     def is_choice(self) -> bool:

@@ -4,10 +4,12 @@ import re
 from html import unescape
 
 import pytest
+from example_sensitivity import dataset
 from markdown_it import MarkdownIt
 from studies import SMOKE_DATASETS
 
 from lube.archive.build import archive_page
+from lube.report.sensitivity import rests_on
 from lube.study.metadata import About
 
 
@@ -68,3 +70,13 @@ def test_the_values_and_findings_of_the_study_are_stated(page_of):
     page = page_of()
     assert "| **Rollers** | two equal rollers: radius 50 mm, Young's modulus 210 GPa" in page
     assert "Metal contact occurs at" in page or "No metal contact was seen" in page
+
+
+def test_what_the_assumptions_do_is_said_if_the_archive_has_it(study, datasets, page_of):
+    results = datasets | {"sensitivity": dataset(), "record_bands": None}
+    kinds = [*SMOKE_DATASETS, "sensitivity"]
+    page = archive_page(study, "smoke.yaml", kinds, results)
+    table = rests_on(study, dataset())
+    assert f"{table}\n## What the archive contains" in page
+    without = archive_page(study, "smoke.yaml", list(SMOKE_DATASETS), results)
+    assert "What this does" not in without and "\n\n## What the archive contains" in without

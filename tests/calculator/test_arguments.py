@@ -1,13 +1,19 @@
 """Numbers with units from Python, and results in customary units."""
 
+import inspect
+import re
+
 import numpy as np
 import pint
 import pytest
 import xarray as xr
+from studies import ROOT
 
+import lube
 from lube import StudyError
 from lube.calculator.answers import described
 from lube.calculator.arguments import amount
+from lube.lazy import homes
 
 
 @pytest.mark.parametrize(
@@ -63,3 +69,25 @@ def test_results_have_customary_units_and_names():
     assert found["regime"].values.tolist() == ["isoviscous_rigid", "piezoviscous_elastic"]
     assert found["force"].attrs["units"] == "N"
     assert "units" not in table["force"].attrs
+
+
+def test_the_documentation_says_which_function_takes_which_choice():
+    text = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+    head, _, *rows = re.findall(r"^\| (.*) \|$", text, re.MULTILINE)
+    choices = [re.findall(r"`(\w+)`", cell) for cell in head.split(" | ")[1:]]
+    listed = set()
+    for row in rows:
+        names, *cells = row.split(" | ")
+        first, *others = re.findall(r"`(\w+)`", names)
+        names = [first] + [f"required{one}" if one[0] == "_" else one for one in others]
+        listed.update(names)
+        for name in names:
+            taken = inspect.signature(getattr(lube, name)).parameters
+            for arguments, cell in zip(choices, cells, strict=True):
+                is_taken = cell.startswith(("yes", "line"))
+                assert all((each in taken) == is_taken for each in arguments), (name, arguments)
+    functions = {name: getattr(lube, name) for name in homes("lube")}
+    functions = {name: one for name, one in functions.items() if inspect.isfunction(one)}
+    assert listed == {
+        name for name, one in functions.items() if "rollers" in inspect.signature(one).parameters
+    }

@@ -100,6 +100,9 @@ def test_the_surface_is_weighted_as_the_line_is(rollers, oil):
         of_points = found[f"surface_breakthrough_probability{end}"].values
         whole = found[f"whole_surface_probability{end}"].item()
         assert whole == pytest.approx(0.75 * of_points[0] + 0.25 * of_points[1])
+    rates = found["surface_breakthrough_rate"].values
+    assert found["whole_surface_rate"] == pytest.approx(0.75 * rates[0] + 0.25 * rates[1])
+    assert found["whole_surface_rate"].attrs["units"] == "h-1"
     assert found["whole_surface_probability"] > 0.1 and "whole_probability" not in found
 
 

@@ -9,8 +9,10 @@ import xarray as xr
 import lube
 from lube import LubeError
 from lube.calculator.arguments import FORMULA
+from lube.contact.surface_strip import SURFACES
 from lube.stages import areal, film_table, tail
 from lube.stages.film_profile import film_profile_table
+from lube.statistics.one_pair import quantile
 from lube.study.oil_properties import lubricant_table
 
 GRID = {
@@ -76,13 +78,31 @@ def test_contact_of_the_surface_is_that_of_the_areal_stage(rollers, oil, busy):
     choices = {"film_formula": ["paper"], "seed": busy.study.seed, "contact_model": "surface"}
     found = lube.contact_probability(rollers, oil, **one, **choices)
     film = busy.film.isel(force=[-1], speed=[-1], temperature=[-1])
-    expected = areal.make(busy.study, {"film": film}).isel(lubricant=0, slide_to_roll_ratio=0)
-    expected["passage_width"] *= 1e6
+    areas = areal.make(busy.study, {"film": film})
+    expected = areas.isel(lubricant=0, slide_to_roll_ratio=0)
+    expected["passage_width"] = 1e6 * expected["passage_width"]
     for name, values in expected.drop_vars("length").items():
         np.testing.assert_array_equal(found[f"surface_{name}"], values)
     assert found["surface_passage_width"].attrs["units"] == "um"
     assert found["surface_contacts"].attrs["long_name"].endswith("on the surface")
+    study = busy.study.model_copy(update={"contact_model": ("surface",)})
+    inputs = {"film": film.isel(film_formula=[0]), "areal": areas}
+    expected = tail.make(study, inputs).isel(lubricant=0, slide_to_roll_ratio=0, contact_model=0)
+    for name, factor in {"breakthrough_rate": 3600.0, "breakthrough_duration": 1e3}.items():
+        np.testing.assert_array_equal(found[f"surface_{name}"], factor * expected[name])
+    assert found["surface_breakthrough_rate_upper"].attrs["units"] == "h-1"
     assert "breakthrough_probability" not in found
+
+
+def test_one_pair_of_surfaces_differs_from_the_mean_as_its_deviation_says(rollers, oil):
+    found = lube.contact_probability(rollers, oil, **POINT, contact_model="surface")
+    name = "surface_breakthrough_probability"
+    lower, upper = (found[f"{name}_pair_{end}"].item() for end in ("lower", "upper"))
+    assert lower <= found[f"{name}_lower"] and found[f"{name}_upper"] <= upper
+    sampled = 0.25 * (found[f"{name}_upper"] - found[f"{name}_lower"])
+    half = quantile(SURFACES) * np.hypot(found["surface_pair_deviation"], sampled)
+    assert lower == pytest.approx(max(found[name].item() - half.item(), 0.0), rel=1e-9)
+    assert "on the surface" in found[f"{name}_pair_upper"].attrs["long_name"]
 
 
 def test_surface_and_line_are_answered_together(rollers, oil):
@@ -237,6 +257,18 @@ def test_a_profile_is_that_of_the_film_profile_stage(rollers, oil, busy):
 def test_a_profile_is_of_one_point(rollers, oil):
     with pytest.raises(LubeError, match="force: got 2 values, need one"):
         lube.profile(rollers, oil, **POINT | {"force": ["1 N", "2 N"]})
+
+
+@pytest.mark.parametrize("deformation", ["none", "venner-1997", "computed"])
+def test_a_trace_has_the_shape_and_deformation_of_the_probability(rollers, oil, deformation):
+    hot = POINT | {"temperature": "80 degC"}
+    choices = {"film_shape": "computed", "roughness_deformation": deformation, "seed": 4}
+    choices |= {"slide_to_roll_ratio": 0.4}
+    length = lube.trace(rollers, oil, **hot, **choices)["contact_length"]
+    counted = lube.contact_probability(rollers, oil, **hot, **choices, realisations=1)
+    probability = counted["breakthrough_probability_mean"].item()
+    # Under uneven films contact is counted at some of the time steps.
+    assert np.mean(length.values > 0.0) == pytest.approx(probability, rel=0.1)
 
 
 def test_the_trace_of_an_insulator_has_no_resistance(oil):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from studies import CONFIG, OIL
 
+import lube
 from lube import LubeError, Oil, Rollers
 from lube.stages import load_record
 
@@ -195,6 +196,10 @@ def test_both_show_themselves_and_travel_between_processes():
         (
             lambda: Rollers("50 mm", "0.2 um", longest_wavelenght="1 mm"),
             "Rollers: longest_wavelenght: unknown argument, did you mean 'longest_wavelength'?",
+        ),
+        (
+            lambda: lube.duty([], None, None, bands=True),
+            "duty: bands: unknown argument, only contact_probability takes it",
         ),
         (lambda: Rollers(rms_roughness="1 um"), "Rollers: missing a required argument: 'radius'"),
         (lambda: Oil(OIL, temp_range=1), "Oil: temp_range: unknown argument, did you mean"),

@@ -35,15 +35,38 @@ def test_a_short_record_and_a_slow_rig_tell_less(rollers, oil, found):
     assert (slow.half_width.sel(film) > found.half_width.sel(film)).all()
 
 
+def test_durations_and_thresholds_are_compared_in_one_plan(rollers, oil, found):
+    several = {"turns": [0.2, 1.0], "threshold": ["100 ohm", "1 ohm"], "rig": "threshold-counter"}
+    plan = lube.plan(rollers, oil, **POINT, realisations=16, **several)
+    assert plan.half_width.dims == ("quantity", "turns", "threshold", "force")
+    assert plan.reading_error.dims == ("threshold", "force")
+    np.testing.assert_array_equal(plan.threshold, [100.0, 1.0])
+    for turns in several["turns"]:
+        one = several | {"turns": turns, "threshold": "1 ohm"}
+        alone = lube.plan(rollers, oil, **POINT, realisations=16, **one)
+        here = plan.sel(turns=turns, threshold=1.0)
+        np.testing.assert_array_equal(here.half_width, alone.half_width)
+        np.testing.assert_array_equal(here.reading_error, alone.reading_error)
+    exact = lube.plan(rollers, oil, **POINT, realisations=16, turns=[0.2, 1.0])
+    np.testing.assert_array_equal(exact.half_width.sel(turns=1.0), found.half_width)
+
+
+def test_an_ecr_meter_shows_the_mean_voltage_whatever_the_threshold(rollers, oil):
+    thresholds = {"threshold": ["100 ohm", "1 ohm"], "realisations": 4}
+    plan = lube.plan(rollers, oil, **POINT, rig="mtm-ecr", **thresholds)
+    first, second = plan.reading_error.transpose("threshold", ...).values
+    np.testing.assert_array_equal(first, second)
+
+
 @pytest.mark.parametrize(
     ("argument", "value", "said"),
     [
         ("rig", "mtm", "rig: got 'mtm', "),
         ("rig", 3, "rig: got 3, need one of mtm-ecr, "),
         ("film_shape", True, "film_shape: got True, need one of flat, computed"),
-        ("threshold", ["1 ohm", "2 ohm"], "threshold: got 2 values, need one"),
         ("threshold", "5 m", "threshold: wrong dimension or unit 'm'"),
         ("turns", 0, "turns: got 0, need a value above 0"),
+        ("turns", [1, -2], "turns: got -2, need a value above 0"),
         ("film_formula", ["paper", "moes"], "film_formula: got ['paper', 'moes'], need one name"),
         ("roughness_deformation", "venner-1997", "roughness_deformation: got venner-1997, need"),
         ("contact_model", "surface", "plan: contact_model: unknown argument"),

@@ -16,6 +16,22 @@ from lube.lazy import homes
 from lube.physics.pressure_viscosity import roelands_slope
 from lube.stages import film_table, load_study, lubricant_table
 
+USES = """
+import lube
+import pint
+
+rollers, oil = lube.Rollers("50 mm", "0.2 um"), lube.Oil("mobilgear-shc-xmp-320")
+force, rest = pint.UnitRegistry().Quantity(800.0, "N"), ("0.5 m/s", "60 degC")
+lube.required_film(rollers, force)
+lube.trace(rollers, oil, (800, "N"), *rest)
+lube.film(rollers, oil, ([400, 800], "N"), *rest)
+lube.film(rollers, oil, 800.0, *rest)  # type: ignore[arg-type]
+lube.trace(rollers, oil, ["400 N"], *rest)  # type: ignore[arg-type]
+lube.trace(rollers, oil, "400 N", *rest, film_shape="round")  # type: ignore[arg-type]
+lube.duty("day.csv", rollers, oil, contact_model=["strip"])  # type: ignore[list-item]
+lube.plan(rollers, oil, "400 N", *rest, rig="mtm")  # type: ignore[arg-type]
+"""
+"""What the types allow; mypy must find a mistake in each line that it should ignore."""
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md"))]
 
 
@@ -70,8 +86,9 @@ def test_examples_have_the_types_that_the_package_promises(tmp_path):
         blocks = [content for language, content in code_blocks(page) if language == "python"]
         if blocks:
             (tmp_path / f"{page.stem.replace('-', '_')}.py").write_text("\n".join(blocks), "utf-8")
+    (tmp_path / "uses.py").write_text(USES, "utf-8")
     command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "pyproject.toml", tmp_path]
-    command += ["--no-incremental"]
+    command += ["--no-incremental", "--warn-unused-ignores"]
     checked = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
     assert checked.returncode == 0, checked.stdout
 

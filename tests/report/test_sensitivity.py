@@ -1,42 +1,24 @@
 import numpy as np
 import xarray as xr
+from example_sensitivity import dataset
+from studies import PAPER, ROOT
 
-from lube.report.sensitivity import rests_on
+from lube.report.markdown import escaped
+from lube.report.sensitivity import rests_on, values_taken
+from lube.study.study import load_study
+from lube.study.uncertainty import Uncertainty, spoken
 
-FIRST = [[0.19, 0.36, 0.51], [0.7, 0.5, 0.4], [0.0, 0.0, 0.0]]
-
-
-def dataset(**changes):
-    forces = [100.0, 200.0, 400.0]
-    probability = np.array([1e-5, 1e-3, 0.1])
-    shape = {"lubricant": ["oil"], "temperature": [40.0], "speed": [600 / 7], "force": forces}
-    dims = tuple(shape)
-    effects = np.log([[2.0, 3.0, 4.0], [20.0, 30.0, 40.0], [1.01, 1.01, 1.01]])
-    table = {
-        "elementary_effect": (("factor", *dims), effects.reshape(3, 1, 1, 1, 3)),
-        "first_order": (("factor", *dims), np.reshape(FIRST, (3, 1, 1, 1, 3))),
-        "group_of_factor": ("factor", ["conditions", "contact model", "seed"]),
-        "range_of_factor": ("factor", ["-1 K to 1 K", "line, surface", "any"]),
-        "source_of_factor": ("factor", ["assumed", "the model", "the study's seed"]),
-    }
-    for name in ("elementary_effect", "first_order"):
-        dims_, values = table[name]
-        table |= {f"{name}_lower": (dims_, values - 0.01), f"{name}_upper": (dims_, values + 0.01)}
-    for end, times in (("median", 1.0), ("lower", 0.1), ("upper", 2.0)):
-        values = (probability * times).reshape(1, 1, 1, 3)
-        table[f"breakthrough_probability_{end}"] = dims, values
-    coordinates = shape | {"factor": ["temperature", "contact_model", "seed"]}
-    return xr.Dataset(table, coordinates).assign(changes)
+STUDY = load_study(PAPER)
 
 
 def test_what_matters_most_comes_first_with_its_range_and_source():
-    lines = rests_on(dataset()).strip().splitlines()
+    lines = rests_on(STUDY, dataset()).strip().splitlines()
     rows = [line for line in lines if line.startswith("|")]
     assert [row.split(" | ")[0] for row in rows[2:]] == [
         *("| contact model", "| temperature", "| probability, 5 to 95 % of the samples")
     ]
-    assert rows[2] == "| contact model | line, surface | the model | 40 | 30 | 20 |"
-    assert rows[3] == "| temperature | -1 K to 1 K | assumed | 4 | 3 | 2 |"
+    assert rows[2] == "| contact model | line | line, surface | the model | 40 | 30 | 20 |"
+    assert rows[3] == "| temperature | 40 °C to 80 °C | -1 K to 1 K | assumed | 4 | 3 | 2 |"
     assert rows[4].endswith("| 0.01 to 0.2 | 0.0001 to 0.002 | 1e-06 to 2e-05 |")
     assert rows[0].endswith(
         "| 400 N, 85.71 r/min, 40 °C | 200 N, 85.71 r/min, 40 °C | 100 N, 85.71 r/min, 40 °C |"
@@ -46,14 +28,14 @@ def test_what_matters_most_comes_first_with_its_range_and_source():
 def test_points_without_a_film_are_left_out():
     found = dataset()
     unknown = found["elementary_effect"].where(found["force"] < 300.0)
-    rows = rests_on(found.assign(elementary_effect=unknown)).splitlines()
+    rows = rests_on(STUDY, found.assign(elementary_effect=unknown)).splitlines()
     assert "400 N" not in "".join(rows) and "200 N" in "".join(rows)
     nothing = found.assign(elementary_effect=xr.full_like(unknown, np.nan))
-    assert rests_on(nothing) == ""
+    assert rests_on(STUDY, nothing) == ""
 
 
 def test_what_to_measure_first_is_said_with_what_it_gains():
-    last = rests_on(dataset()).strip().splitlines()[-1]
+    last = rests_on(STUDY, dataset()).strip().splitlines()[-1]
     assert "the temperature at 400 N, 85.71 r/min, 40 °C, by 26.4 %" in last
     assert "the temperature at 100 N, 85.71 r/min, 40 °C, by 8.95 %" in last
     assert "contact model" not in last
@@ -64,8 +46,8 @@ def test_noise_is_no_finding():
     for name in ("elementary_effect", "first_order"):
         is_noise = (found["force"] < 300.0) & (found["factor"] == "temperature")
         found[f"{name}_lower"] = found[f"{name}_lower"].where(~is_noise, 0.0)
-    lines = rests_on(found).strip().splitlines()
-    assert "| temperature | -1 K to 1 K | assumed | 4 | – | – |" in lines
+    lines = rests_on(STUDY, found).strip().splitlines()
+    assert "| temperature | 40 °C to 80 °C | -1 K to 1 K | assumed | 4 | – | – |" in lines
     assert lines[-1].endswith("the temperature at 400 N, 85.71 r/min, 40 °C, by 26.4 %.")
 
 
@@ -77,9 +59,31 @@ def test_each_contact_model_and_records_without_interval_are_said():
         },
         {"contact_model": ["line", "surface"], "origin": "measured"},
     )
-    lines = rests_on(dataset(), records).strip().splitlines()
+    lines = rests_on(STUDY, dataset(), records).strip().splitlines()
     assert lines[-5].startswith(
         "Of 2 measured records by contact of the line: 1 within the interval"
     )
     assert "the surface: 1 in none of the bands; 1 not judged" in lines[-3]
     assert lines[-1] == "1 of them have no interval: they are taken as exact."
+
+
+def test_a_study_has_a_value_of_each_factor():
+    words = values_taken(STUDY)
+    assert words.keys() == Uncertainty.model_fields.keys()
+    assert words["viscosity"] == "335 mm²/s to 68.5 mm²/s"
+    assert (words["critical_thickness"], words["film_formula"]) == ("5 nm", "paper")
+    unlike = STUDY.rollers.second.model_copy(update={"young_modulus": 3e11})
+    rollers = STUDY.rollers.model_copy(update={"second": unlike})
+    taken = values_taken(STUDY.model_copy(update={"rollers": rollers}))
+    assert taken["young_modulus"] == "210 GPa and 300 GPa"
+
+
+def test_the_documentation_has_the_papers_values_and_ranges():
+    page, taken = (ROOT / "docs/assumptions.md").read_text("utf-8"), values_taken(STUDY)
+    rows = page.partition("<!-- effects -->")[2]
+    factors = STUDY.uncertainty.factors()
+    for factor in factors:
+        given, source = factor.given.in_words, escaped(factor.given.source)
+        cells = spoken(factor.name), taken[factor.name], given, source
+        assert f"| {' | '.join(cells)} | " in rows, "run docs/tools/assumptions_page.py"
+    assert rows.count("\n| ") == len(factors) + 3  # head, its rule, and the band

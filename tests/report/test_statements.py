@@ -7,7 +7,10 @@ from studies import CONFIG, PAPER, ROOT
 from lube.report.statements import assumptions_of, limits_of
 from lube.study.study import load_study
 
-DOCS = {name: (ROOT / f"docs/{name}.md").read_text("utf-8") for name in ("limits", "assumptions")}
+DOCS = {
+    name: (ROOT / f"docs/{name}.md").read_text("utf-8").partition("<!-- effects -->")[0]
+    for name in ("limits", "assumptions")
+}
 OWN = {"name": "mine", "rollers": {"first": {"young_modulus": "310 GPa"}}, "resistivity": "1 ohm*m"}
 
 
@@ -18,6 +21,8 @@ def left_open(text):
 def test_the_papers_study_keeps_all():
     paper = load_study(PAPER)
     assert assumptions_of(paper, paper, DOCS["assumptions"]) == DOCS["assumptions"]
+    page = (ROOT / "docs/assumptions.md").read_text("utf-8")
+    assert assumptions_of(paper, paper, page) == DOCS["assumptions"] != page
     assert limits_of(paper, paper, DOCS["limits"]) == DOCS["limits"]
     # More realisations change no value that the numbers of the limits follow from.
     more = load_study(PAPER, {"name": "mine", "realisations": 128})

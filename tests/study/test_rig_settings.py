@@ -1,11 +1,13 @@
 """Settings of known rigs."""
 
+from typing import get_args
+
 import pytest
 from studies import PAPER
 
 from lube.errors import StudyError
 from lube.rig.readings import READINGS
-from lube.study.rig_settings import PRESETS, Rig
+from lube.study.rig_settings import PRESETS, KnownRig, Rig
 from lube.study.study import load_study
 
 
@@ -24,6 +26,10 @@ def test_a_known_rig_has_its_settings_and_the_studys_for_all_others(name):
 def test_every_reading_is_one_that_is_simulated():
     assert {Rig(preset=name).reading for name in PRESETS} <= set(READINGS)
     assert Rig().reading == "threshold"
+
+
+def test_the_type_of_a_known_rig_names_all_of_them():
+    assert get_args(KnownRig) == tuple(PRESETS)
 
 
 def test_values_of_the_study_take_precedence():

@@ -1,4 +1,4 @@
-from lube.report import SUMMARISED
+from lube.report import ON_ASSUMPTIONS, SUMMARISED
 from lube.pipeline.command_line import PAPER, same_study
 
 # Chapter of the report that holds these pages.
@@ -7,8 +7,6 @@ PAGES = {
     "configuration": "every value, as written and as understood",
     "assumptions": "what the paper leaves open, and what is used instead",
 }
-# Datasets made on request that the page of assumptions shows.
-ON_ASSUMPTIONS = "sensitivity", "record_bands"
 # Parts of the report's start page.
 PARTS = ("facts", "findings", "limits", "files", "pipeline")
 

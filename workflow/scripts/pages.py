@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lube.pipeline.jobs import study_of_job
-from lube.report import SUMMARISED
+from lube.report import ON_ASSUMPTIONS, SUMMARISED
 from lube.report.configuration import configuration
 from lube.report.key_tables import files_table
 from lube.report.markdown import title_and_text, to_html
@@ -18,7 +18,7 @@ from lube.study.study import load_study
 study, paper = study_of_job(snakemake), load_study(snakemake.input.paper)
 results = {
     kind: load(path, kind, study)
-    for kind in (*SUMMARISED, "sensitivity", "record_bands")
+    for kind in (*SUMMARISED, *ON_ASSUMPTIONS)
     if (path := snakemake.input.get(kind))
 }
 written = Path(snakemake.input.study).read_text(encoding="utf-8")
@@ -26,7 +26,7 @@ docs = {Path(file).stem: Path(file).read_text(encoding="utf-8") for file in snak
 title, assumptions = title_and_text(assumptions_of(study, paper, docs["assumptions"]))
 _, limits = title_and_text(limits_of(study, paper, docs["limits"]))
 if "sensitivity" in results:
-    assumptions += rests_on(results["sensitivity"], results.get("record_bands"))
+    assumptions += rests_on(study, *map(results.get, ON_ASSUMPTIONS))
 drawing = docs["architecture"].split("```")[1]
 parts = {
     "facts": to_html(f"{facts(study, results['lubricant'])}\n\n{made(study)}"),
