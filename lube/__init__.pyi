@@ -5,10 +5,10 @@ from lube.calculator.answers import Answer as Answer
 from lube.calculator.arguments import COMPLETE as COMPLETE
 from lube.calculator.duty_cycle import duty as duty
 from lube.calculator.indicators import indicators as indicators
+from lube.calculator.one_point import profile as profile
+from lube.calculator.one_point import trace as trace
 from lube.calculator.operating_points import contact_probability as contact_probability
 from lube.calculator.operating_points import film as film
-from lube.calculator.operating_points import profile as profile
-from lube.calculator.operating_points import trace as trace
 from lube.calculator.parts import Oil as Oil
 from lube.calculator.parts import Rollers as Rollers
 from lube.calculator.planning import plan as plan

@@ -16,30 +16,23 @@ from lube.calculator.arguments import (
     bare_number,
     check_realisations,
     conditions,
-    one_name,
-    single,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import with_limits, with_pair_limits
-from lube.contact.rough_pair import roughness_batch
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
-from lube.errors import RangeError, StudyError, shown
+from lube.errors import StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.plausibility import remarks
 from lube.inference.surface_scatter import revolution_size, surface_prediction
-from lube.schema import LIMITS, OPERATING_DIMS, POINT_DIMS
-from lube.stages.film import film_table
-from lube.stages.film_profile import film_profile_table
+from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
-from lube.stages.trace import contact_trace
-from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import RollerPair
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
-from lube.types import Amount, ContactModel, FilmShape, LoadSharing, OneAmount, RoughnessDeformation
+from lube.types import Amount, ContactModel, FilmShape, LoadSharing, RoughnessDeformation
 
 FILM_VARIABLES = (
     "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
@@ -381,106 +374,3 @@ def ensemble(
     independent = spec.independent_windows(width, min(speed_ratios(slip)))
     found = with_limits(xr.Dataset(contact, levels, {"seed": seed}), independent)
     return with_pair_limits(found, independent)
-
-
-@with_parts
-def trace(
-    rollers: Rollers,
-    oil: Oil,
-    force: OneAmount,
-    speed: OneAmount,
-    temperature: OneAmount,
-    *,
-    film_formula: str = FORMULA,
-    film_shape: FilmShape = "flat",
-    roughness_deformation: RoughnessDeformation = "none",
-    slide_to_roll_ratio: float = 0.0,
-    seed: int = SEED,
-) -> Answer:
-    """Contact length and electrical resistance over one revolution.
-
-    Parameters
-    ----------
-    rollers, oil, force, speed, temperature, film_formula
-        As in `film`, one value of each.
-    film_shape, roughness_deformation, slide_to_roll_ratio, seed
-        As in `contact_probability`; the trace is that of realisation 0.
-
-    Returns
-    -------
-    Answer
-        ``contact_length`` (um) and ``contact_resistance`` (ohm) over time (ms). The resistance
-        is infinite without contact.
-
-    Raises
-    ------
-    LubeError
-        Which argument, what came, what is needed.
-
-    Examples
-    --------
-    >>> rollers = Rollers(radius="5 mm", rms_roughness="0.2 um")
-    >>> found = trace(rollers, Oil("mobilgear-shc-xmp-320"), "300 N", "500 rpm", "80 degC")
-    >>> f"{found.time.values[-1]:.0f} ms"
-    '120 ms'
-    """
-    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of(film_shape, roughness_deformation, "none", "line")
-    one = _one_point(rollers, oil, force, speed, temperature)
-    model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}
-    table = film_table(*one, [one_name("film_formula", film_formula)], **model)
-    point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
-    rollers.lines.check_width(2.0 * table["contact_half_width"].item(), "force: the contact")
-    rollers.lines.check_follows_rolling()
-    lines = roughness_batch(rollers.lines, seed, [0])
-    layer, resistivity = rollers.layer, rollers.resistivity
-    found = contact_trace(lines, table, [point], layer, resistivity, choices.gap)
-    names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
-    return described(found[names].isel(operating_point=0).drop_attrs())
-
-
-@with_parts
-def profile(
-    rollers: Rollers, oil: Oil, force: OneAmount, speed: OneAmount, temperature: OneAmount
-) -> Answer:
-    """Pressure and film across the contact, from Reynolds' equation.
-
-    Parameters
-    ----------
-    rollers, oil, force, speed, temperature
-        As in `film`, one value of each. The contact is fully flooded, isothermal and smooth.
-
-    Returns
-    -------
-    Answer
-        ``pressure`` (MPa) and ``film`` (um), which is the gap outside the contact, over
-        ``position`` (um) from the line of centres, negative at the inlet; also ``central_film``,
-        ``minimum_film``, ``hertz_pressure`` and ``contact_half_width``.
-
-    Raises
-    ------
-    LubeError
-        Which argument, what came, what is needed; or that the film did not converge.
-
-    Examples
-    --------
-    >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
-    >>> found = profile(rollers, Oil("mobilgear-shc-xmp-320"), "800 N", "100 rpm", "40 degC")
-    >>> f"{found.central_film.item():.2f} um, least {found.minimum_film.item():.2f} um"
-    '1.02 um, least 0.85 um'
-    """
-    table = film_profile_table(*_one_point(rollers, oil, force, speed, temperature))
-    found = table.isel(dict.fromkeys(POINT_DIMS, 0))
-    if np.isnan(found["central_film"]):
-        raise RangeError(f"the film at {force}, {speed} and {temperature} did not converge")
-    place = found["film_position"] * found["contact_half_width"]
-    found = found.assign_coords(position=place).swap_dims(film_position="position")
-    names = ["pressure", "film", "central_film", "minimum_film"]
-    return described(found[[*names, "hertz_pressure", "contact_half_width"]].drop_attrs())
-
-
-def _one_point(rollers, oil, force, speed, temperature):
-    """Oil at the temperature, pair of rollers, force in N and speed in rpm, of one point."""
-    given = conditions(force, speed, temperature, rollers.pair.first.radius)
-    force, speed, temperature = ([single(one)] for one in given)
-    return lubricant_table([oil.record], temperature), rollers.pair, force, speed

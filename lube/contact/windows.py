@@ -10,13 +10,8 @@ import functools
 import numpy as np
 import xarray as xr
 
-from lube.contact.waves import (
-    Waves,
-    answered_windows,
-    answers_at,
-    longest_answers,
-    rms_along,
-)
+from lube.contact.answered_windows import answered_windows, rms_along
+from lube.contact.waves import Waves, answers_at, longest_answers
 from lube.contact.window_films import WindowFilm, window_films
 from lube.errors import StudyError
 from lube.grid.discretise import LineGrid, layer_factor_of, revolution, speed_ratios, whole_numbers

@@ -47,7 +47,7 @@ _WORDS = """
 By what the probability of breakthrough is multiplied, or divided, as each quantity goes through its
 range, or a choice is made otherwise: means over random values of all others, at three operating
 points (`sensitivity.nc`). Ranges in per cent or kelvin are deviations from what the study takes. A
-dash is for what is not told from the effect of the random numbers.
+dash stands for an effect no greater than that of the random numbers.
 """
 
 

@@ -1,4 +1,4 @@
-"""Sensitivity indices of the logarithm of the probability, by SALib.
+"""Sensitivity indices of the logarithm of the probability, with the samples of SALib.
 
 References
 ----------

@@ -5,12 +5,11 @@ import pytest
 from plain_answers import PlainAnswer
 
 from lube.contact import waves
-from lube.contact.waves import Answer, Waves, answered_windows, answers_at, lifted
+from lube.contact.waves import Answer, Waves, answers_at, lifted
 from lube.grid.discretise import line_pair
 from lube.grid.operating_points import at_slip
 from lube.kernels.motion import surface_position
 from lube.stages import film_table, lubricant_table, roughness_lines
-from lube.surfaces.synthetic import wave_amplitudes
 
 SLIPS = (0.0, 1.0)
 
@@ -91,62 +90,3 @@ def test_answers_to_lines_are_those_to_every_wave(has_shape, point, pair, spec):
     rms = np.sqrt(np.mean(square, axis=0).sum(axis=0))
     assert rms.mean() < waves.PRECISION * composite(spec)
     assert rms.max() < 2.0 * waves.PRECISION * composite(spec)
-
-
-# Second moments, for rare contact
-
-
-@pytest.fixture
-def window(point, spec):
-    film = np.full(int(2 * point["contact_half_width"].item() / spec.spacing), composite(spec))
-    before = film.size // 2
-    answers = tuple(answers_at(point, False).values)
-    return answered_windows(spec, film.size, before, answers)(film), before
-
-
-def changed_waves(spec, roller, point, positions):
-    """Square amplitudes, wavenumbers and responses of each wave at positions."""
-    first, amplitudes = wave_amplitudes(spec, roller)
-    points, numbers = spec.points[roller], first + np.arange(amplitudes.size)
-    line = np.zeros(points)
-    plain = PlainAnswer(line, spec.spacing, point.isel(roller=roller), positions)
-    count = plain.numbers[-1] - first + 1
-    change = plain.change[:, first - 1 :][:, : amplitudes.size]
-    response = np.ones((positions.size, amplitudes.size), complex)
-    response[:, : change.shape[1]] += change
-    assert count > 10
-    power = 0.5 * (amplitudes / spec.height_step) ** 2
-    return power, 2.0 * np.pi * numbers / points, response
-
-
-def test_rms_heights_along_the_window_are_those_of_the_waves(window, point, spec):
-    found, before = window
-    points = np.arange(0, found.film.size, 25)
-    square = 0.0
-    for roller in range(2):
-        power, _, response = changed_waves(spec, roller, point, points - before)
-        square = square + np.abs(response) ** 2 @ power
-    expected = np.sqrt(square) / composite(spec)
-    np.testing.assert_allclose(found.rms[points], expected, rtol=0.02)
-    assert np.ptp(found.rms) > 0.05
-
-
-@pytest.mark.parametrize("is_moving", [False, True])
-def test_added_covariances_are_those_of_the_waves(is_moving, window, point, spec):
-    """At one moment, and of the same point of the line on its way."""
-    found, before = window
-    nodes = np.arange(0, found.film.size, 1 << found.shift)[::9]
-    for roller in range(2):
-        power, by_point, response = changed_waves(spec, roller, point, nodes - before)
-        at = np.zeros((nodes.size, 1)) if is_moving else nodes[:, None]
-        here = np.exp(1j * by_point * at)
-        expected = (response * here * power) @ (response * here).conj().T
-        expected = (expected - (here * power) @ here.conj().T).real / composite(spec) ** 2
-        shapes = found.shapes[roller][::9][: nodes.size]
-        both = np.hstack([np.ones((nodes.size, 1)), shapes])
-        table = found.covariances[roller, :, : both.shape[1], : both.shape[1]]
-        lags = (at - at.T).astype(int) >> found.shift
-        table = table[lags + len(table) // 2]
-        some = np.einsum("pa,ptab,tb->pt", both, table, both)
-        np.testing.assert_allclose(some, expected, atol=0.01)
-        assert np.abs(expected).max() > 0.03

@@ -1,0 +1,77 @@
+"""Trace and profile are the workflow's, and of one operating point."""
+
+import numpy as np
+import pytest
+
+import lube
+from lube import LubeError
+from lube.stages.film_profile import film_profile_table
+from lube.study.oil_properties import lubricant_table
+
+POINT = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
+
+
+def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
+    values = {"film_formula": "paper", "seed": 3}
+    found = lube.trace(rollers, oil, **POINT, **values)
+    share = lube.contact_probability(rollers, oil, **POINT, **values, realisations=1)
+    touching = np.isfinite(found["contact_resistance"])
+    assert touching.mean().item() == share["breakthrough_probability"].item()
+    assert 0.0 < touching.mean() < 1.0
+    np.testing.assert_allclose(found["time"][-1] / 600.0, 1.0, rtol=1e-3)  # ms in a revolution
+
+
+def test_a_profile_is_that_of_the_film_profile_stage(rollers, oil, busy):
+    found = lube.profile(rollers, oil, **POINT)
+    table = lubricant_table([oil.record], [60.0])
+    stage = film_profile_table(table, rollers.pair, [400.0], [100.0]).squeeze()
+    for name, of_stage, factor, units in (
+        ("film", "film", 1e6, "um"),
+        ("pressure", "pressure", 1e-6, "MPa"),
+        ("minimum_film", "minimum_film", 1e6, "um"),
+        ("hertz_pressure", "hertz_pressure", 1e-6, "MPa"),
+    ):
+        np.testing.assert_allclose(found[name], factor * stage[of_stage], rtol=1e-12)
+        assert found[name].attrs["units"] == units
+    place = found["position"]
+    np.testing.assert_allclose(place, 1e6 * stage.film_position * stage.contact_half_width)
+    # It carries the load, and the film is thinnest before the end of the contact.
+    load = np.trapezoid(found["pressure"], place) * 1e6 * 1e-6 * rollers.pair.length
+    assert 380.0 < load < 401.0  # the rest is farther in the inlet
+    thinnest = place[np.argmin(found["film"].values)].item()
+    assert 0.0 < thinnest < 1.2 * found["contact_half_width"].item()
+
+
+def test_a_profile_is_of_one_point(rollers, oil):
+    with pytest.raises(LubeError, match="force: got 2 values, need one"):
+        lube.profile(rollers, oil, **POINT | {"force": ["1 N", "2 N"]})
+
+
+@pytest.mark.parametrize("deformation", ["none", "venner-1997", "computed"])
+def test_a_trace_has_the_shape_and_deformation_of_the_probability(rollers, oil, deformation):
+    hot = POINT | {"temperature": "80 degC"}
+    choices = {"film_shape": "computed", "roughness_deformation": deformation, "seed": 4}
+    choices |= {"slide_to_roll_ratio": 0.4}
+    length = lube.trace(rollers, oil, **hot, **choices)["contact_length"]
+    counted = lube.contact_probability(rollers, oil, **hot, **choices, realisations=1)
+    probability = counted["breakthrough_probability_mean"].item()
+    # Under uneven films contact is counted at some of the time steps.
+    assert np.mean(length.values > 0.0) == pytest.approx(probability, rel=0.1)
+
+
+def test_the_trace_of_an_insulator_has_no_resistance(oil):
+    insulator = lube.Rollers("2 mm", "0.2 um", resistivity="insulator")
+    point = {"force": "5 N", "speed": "100 rpm", "temperature": "60 degC"}
+    found = lube.trace(insulator, oil, **point)
+    assert np.isnan(found["contact_resistance"]).all() and (found["contact_length"] > 0.0).any()
+    assert np.isnan(insulator.resistivity)
+
+
+def test_a_trace_is_of_one_point(rollers, oil):
+    with pytest.raises(LubeError, match="speed: got 2 values, need one"):
+        lube.trace(rollers, oil, **POINT | {"speed": ["1 rpm", "2 rpm"]})
+
+
+def test_a_trace_needs_a_contact_that_the_grid_resolves(rollers, oil):
+    with pytest.raises(LubeError, match=r"force: the contact is .* need at least two grid spac"):
+        lube.trace(rollers, oil, **POINT | {"force": "1e-6 N"})
