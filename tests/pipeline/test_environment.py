@@ -15,7 +15,7 @@ BLAS |= {"corrcoef", "cov", "spearmanr", "pearsonr"}
 # They fit planes to measured surfaces, and lines to measured spectra, by least squares.
 FITS = {"abel.py", "surface_statistics.py", "topography.py"}
 # They solve for the film and its response, of which six digits are kept.
-FITS |= {"line_contact.py", "reynolds.py", "response.py", "transient.py"}
+FITS |= {"line_contact.py", "reynolds.py", "response.py", "transient.py", "waves.py"}
 FITS |= {"answered_windows.py", "surface_answers.py"}
 # It adds up waves for a passage, of whose gaps four digits are kept.
 FITS |= {"rough_piece.py"}
