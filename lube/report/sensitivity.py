@@ -38,7 +38,7 @@ _LENGTHS = (
     "critical_thickness"
 ).split()
 _UNITS = _LEVELS | _OF_OIL | dict.fromkeys(_LENGTHS, "m")
-_UNITS |= {"young_modulus": "Pa", "shear_strength": "Pa"}
+_UNITS |= {"young_modulus": "Pa", "shear_strength": "Pa", "resistivity": "ohm*m"}
 _UNITS |= {"hurst_exponent": "", "skewness": "", "kurtosis": ""}
 """Units of the quantities that may be uncertain."""
 _WORDS = """
@@ -89,6 +89,10 @@ def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None)
         changes = ["–" if np.isnan(each) else f"{rounded(each):g}" for each in effects]
         given, source = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
         rows.append((spoken(name), taken[name], given, escaped(source), *changes))
+    if study.resistivity_range:  # no factor of the probability
+        given = study.uncertainty.resistivity
+        told = taken["resistivity"], given.in_words, escaped(given.source)
+        rows.append(("resistivity", *told, *["–"] * shown.sizes["point"]))
     ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
     band = (f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True))
     rows.append(("probability, 5 to 95 % of the samples", "", "", "", *band))
@@ -118,6 +122,7 @@ def values_taken(study: Study) -> dict[str, str]:
     numbers |= {"second_rms_roughness": rms[1:], "viscosity": oil["kinematic_viscosity"].values}
     numbers["pressure_viscosity_coefficient"] = oil["pressure_viscosity_coefficient"].values
     parts = *study.line_spec.lines, study.rollers.first, study.rollers.second, study.boundary_layer
+    numbers["resistivity"] = [study.resistivity] if study.conducts else []
     own = {"film_formula": study.film_formulas[0], "contact_model": ", ".join(study.contact_model)}
     own["pressure_viscosity_definition"] = FORMULA_DEFINITION
     words = {name: own.get(name) or getattr(study, name) for name in CHOICES}

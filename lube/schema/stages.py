@@ -349,7 +349,8 @@ _ROWS = (
         "electrical",
         "what electrical meters read at every operating point, some seconds",
         inputs=("film", "contact"),
-        values=_named("resistivity rollers.length rig") | {"experiment": "evaluation"},
+        values=_named("resistivity resistivity_range rollers.length rig")
+        | {"experiment": "evaluation"},
         target="electrical",
         only_with=("is_sampled", *_LINE, "conducts"),
         parallel=True,

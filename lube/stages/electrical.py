@@ -10,7 +10,7 @@ from lube.grid.operating_points import at_slip, known_films, operating_points
 from lube.physics import electrical
 from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import simulated_revolutions
-from lube.schema import POINT_DIMS, label
+from lube.schema import POINT_DIMS, label, values_with_limits
 from lube.study.rig_settings import OWN_RIG, PRESETS
 from lube.study.study import Study
 from lube.types import Datasets
@@ -43,7 +43,10 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     length = contact["mean_contact_length"].mean("realisation")
     share = contact["breakthrough_probability_mean"]
     table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
-    table["closed_resistance"] = study.resistivity * share / length.where(length > 0.0)
+    closed = study.resistivity * share / length.where(length > 0.0)
+    deviations = 0.0, *(study.resistivity_range or (np.nan, np.nan))
+    limits = [closed * (1.0 + deviation) for deviation in deviations]
+    table |= values_with_limits("closed_resistance", limits)
     rigs = {OWN_RIG: study.rig} | {name: study.rig.like(name) for name in PRESETS}
     capacitance = table["capacitance"] + table["surrounding_capacitance"]
     circuit = share, table["closed_resistance"].fillna(1.0), capacitance

@@ -167,6 +167,12 @@ class Study(StrictModel):
         return self.resistivity != INSULATOR
 
     @property
+    def resistivity_range(self) -> tuple[float, float] | None:
+        """How far the resistivity may deviate, over its value; None if that is not stated."""
+        given = self.uncertainty and self.uncertainty.resistivity
+        return given.range if given else None
+
+    @property
     def has_records(self) -> bool:
         """Whether there are records: measured, or of the simulated rig, which runs with lines."""
         return self.experiment.manifest is not None or self.line_spec.follows_rolling

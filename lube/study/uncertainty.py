@@ -264,13 +264,16 @@ class Uncertainty(StrictModel):
     """deformation of the roughness"""
     contact_model: OfContact | None = _of("contact model")
     """contact of the line, or of the surface that it stands for"""
+    resistivity: Relative | None = _of("electrical")
+    """resistivity of the rollers' material, on which resistances depend, but no probability"""
 
     def factors(self) -> list[Factor]:
-        """Return all factors that are given, in the order of the keys above."""
+        """Return the factors of the probability that are given, in the order of the keys above."""
         return [
-            Factor(name, field.json_schema_extra["group"], given)
+            Factor(name, group, given)
             for name, field in type(self).model_fields.items()
-            if (given := getattr(self, name)) is not None
+            if (group := field.json_schema_extra["group"]) != "electrical"
+            and (given := getattr(self, name)) is not None
         ]
 
 
@@ -346,6 +349,8 @@ def check_uncertainty(study) -> None:
             "hurst_exponent: got a range for lines with a measured spectrum, on which nothing "
             "depends, need none"
         )
+    if uncertain.resistivity and not study.conducts:
+        raise StudyError("resistivity: got a range for an insulator, need none")
     if uncertain.pressure_viscosity_definition:
         for record in study.lubricants:
             if record.pressure_viscosity.gold_base is None:

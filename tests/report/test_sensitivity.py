@@ -15,11 +15,13 @@ def test_what_matters_most_comes_first_with_its_range_and_source():
     lines = rests_on(STUDY, dataset()).strip().splitlines()
     rows = [line for line in lines if line.startswith("|")]
     assert [row.split(" | ")[0] for row in rows[2:]] == [
-        *("| contact model", "| temperature", "| probability, 5 to 95 % of the samples")
+        *("| contact model", "| temperature", "| resistivity"),
+        "| probability, 5 to 95 % of the samples",
     ]
     assert rows[2] == "| contact model | line | line, surface | the model | 40 | 30 | 20 |"
     assert rows[3] == "| temperature | 40 °C to 80 °C | -1 K to 1 K | assumed | 4 | 3 | 2 |"
-    assert rows[4].endswith("| 0.01 to 0.2 | 0.0001 to 0.002 | 1e-06 to 2e-05 |")
+    assert rows[4].endswith("more alloy conduct less | – | – | – |")
+    assert rows[5].endswith("| 0.01 to 0.2 | 0.0001 to 0.002 | 1e-06 to 2e-05 |")
     assert rows[0].endswith(
         "| 400 N, 85.71 r/min, 40 °C | 200 N, 85.71 r/min, 40 °C | 100 N, 85.71 r/min, 40 °C |"
     )
@@ -86,4 +88,5 @@ def test_the_documentation_has_the_papers_values_and_ranges():
         given, source = factor.given.in_words, escaped(factor.given.source)
         cells = spoken(factor.name), taken[factor.name], given, source
         assert f"| {' | '.join(cells)} | " in rows, "run docs/tools/assumptions_page.py"
-    assert rows.count("\n| ") == len(factors) + 3  # head, its rule, and the band
+    assert "| resistivity | 200 nΩ m | -20 % to 100 % | " in rows
+    assert rows.count("\n| ") == len(factors) + 4  # head, its rule, the resistivity, and the band

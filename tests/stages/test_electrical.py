@@ -9,6 +9,7 @@ from lube.contact.window_films import window_films
 from lube.contact.windows import study_windows
 from lube.grid.operating_points import at_slip
 from lube.physics.electrical import mean_inverse_gap
+from lube.stages.electrical import make
 from lube.study.rig_settings import OWN_RIG
 from lube.study.study import load_study
 
@@ -48,6 +49,17 @@ def test_flat_films_have_the_mean_of_one_over_a_gaussian_gap(found, study):
     layer = study.boundary_layer.critical_thickness
     expected = 1.0 / mean_inverse_gap(found.film_thickness.values, rms, layer)
     np.testing.assert_allclose(found.capacitance_film, expected, rtol=1e-4)
+
+
+def test_the_resistance_of_a_closed_contact_has_the_range_of_the_resistivity(found, files, study):
+    assert study.resistivity_range == (-0.2, 1.0)
+    for name, factor in (("lower", 0.8), ("upper", 2.0)):
+        expected = factor * found.closed_resistance
+        np.testing.assert_allclose(found[f"closed_resistance_{name}"], expected, rtol=1e-5)
+    inputs = {name: files[name] for name in ("film", "contact")}
+    unknown = make(study.model_copy(update={"uncertainty": None}), inputs)
+    np.testing.assert_array_equal(unknown.closed_resistance, found.closed_resistance)
+    assert unknown.closed_resistance_lower.isnull().all()
 
 
 def test_more_volts_discharge_through_thicker_films(found, study):

@@ -73,7 +73,7 @@ def test_ranges_are_read_in_their_units(tmp_path):
         ("hurst_exponent", {"range": "+- 0.1"} | SOURCE, "need a range such as 0.6 to 0.8"),
         ("temperature", {"range": "+- 2 %"} | SOURCE, "temperature.range: wrong dimension or unit"),
         ("skew", {"range": "+- 2 %"} | SOURCE, "uncertainty.skew: unknown key"),
-        ("resistivity", {"range": "+- 2 %"} | SOURCE, "uncertainty.resistivity: unknown key"),
+        ("bias_voltage", {"range": "+- 2 %"} | SOURCE, "uncertainty.bias_voltage: unknown key"),
         ("film_shape", {"choices": ["flat"]} | SOURCE, "need 2 or more entries"),
         ("film_shape", {"choices": ["flat", "round"]} | SOURCE, "got 'round'"),
         ("film_shape", {"choices": ["flat", "flat"]} | SOURCE, "got flat repeatedly"),
@@ -135,6 +135,13 @@ def test_a_range_needs_a_source(tmp_path):
             "the half-width of the contact at 2400 N",
         ),
         ({"load_sharing": "iterated"}, "load_sharing: got iterated, need none: probabilities of"),
+        (
+            {
+                "resistivity": "insulator",
+                "uncertainty": {"resistivity": {"range": "+- 50 %"} | SOURCE},
+            },
+            "resistivity: got a range for an insulator, need none",
+        ),
     ],
 )
 def test_ranges_for_which_the_model_has_no_answer_are_refused(tmp_path, section, said):
