@@ -9,7 +9,7 @@ import scipy.fft
 from lube.ehl.line_contact import FilmProfile
 from lube.ehl.response import at_wavelengths
 from lube.grid.discretise import LineGrid, speed_ratios
-from lube.grid.film_responses import SHORTEST, SLIDING_RATIO, changed_waves
+from lube.grid.film_responses import FINER_RATIO, SHORTEST, changed_waves
 from lube.grid.operating_points import surface_speeds
 from lube.types import Array, Pair
 
@@ -124,7 +124,7 @@ class RoughPiece:
 def _response(profile, wavenumber, speed, position):
     """Response of a film to waves, shape (positions, waves)."""
     wanted = 2.0 * np.pi / wavenumber
-    count = int(np.log(wanted[0] / SHORTEST) / np.log(SLIDING_RATIO)) + 2
+    count = int(np.log(wanted[0] / SHORTEST) / np.log(FINER_RATIO)) + 2
     solved = np.geomspace(wanted[0], SHORTEST, count)
     transfer = changed_waves(profile, solved, np.array([speed]), position)[0]
     return at_wavelengths(wanted, solved, transfer, position).T

@@ -20,10 +20,10 @@ SHORTEST = 0.05
 """Shortest wave that is solved for, over the half-width of the contact."""
 UNCHANGED = 0.003
 """Relative change of a wave by the oil below which it and all shorter waves count as unchanged."""
-ROLLING_RATIO, SLIDING_RATIO = 1.2, 1.15
-"""Largest ratio of neighbouring wavelengths, in pure rolling and with slip. With slip the response
-changes faster with the wavelength: the part of a wave that the oil carries through the contact runs
-ahead of the rough surface, or falls behind it."""
+WAVE_RATIO, FINER_RATIO = 1.2, 1.15
+"""Largest ratio of neighbouring wavelengths; the second for slide-to-roll ratios above 1. There the
+response changes faster with the wavelength: the part of a wave that the oil carries through the
+contact runs far ahead of the rough surface, or falls far behind it."""
 POSITIONS = 0.02, 1.06
 """Spacing of positions near the contact, and ratio of neighbouring positions beyond."""
 ANGLES = np.arange(0.0, 91.0, 15.0)
@@ -119,7 +119,7 @@ def _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads):
     """Responses, and their interpolation errors over all of their dimensions but the last two."""
     widths, longest = contact["contact_half_width"], spec.longest_wavelength
     shortest = max(SHORTEST * widths.min().item(), 2.0 * np.pi / spec.q_max)
-    ratio = SLIDING_RATIO if slide_to_roll_ratio.any() else ROLLING_RATIO
+    ratio = FINER_RATIO if (np.abs(slide_to_roll_ratio) > 1.0).any() else WAVE_RATIO
     count = int(np.ceil(np.log(longest / shortest) / np.log(ratio)))
     waves = np.geomspace(longest, shortest, count + 1)
     positions = film_positions(contact, *POSITIONS)
