@@ -20,6 +20,7 @@ across the strip.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -45,7 +46,7 @@ from lube.surfaces.lay import extents
 from lube.surfaces.rough_surface import longest_waves, rough_surface, surface_grid
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
-from lube.types import Values
+from lube.types import Array, Values
 
 SURFACES = 16
 """Surfaces drawn; the errors follow from the scatter between them."""
@@ -254,14 +255,8 @@ def _on_alike_grids(spec, strips):
 
     The grid of a strip depends on its own film, and on the width of the widest strip.
     """
-    moments = surface_moments(spec)
     widest, is_answered = max(strip.width for strip in strips), strips[0].answers is not None
-    # Sizes of the smallest contacts: parabolas as high as the mean summit above the film. They are
-    # rounded down to powers of the root of two, so that strips share surfaces.
-    films = np.array([strip.films(strip.width / COLUMNS).min() for strip in strips])
-    slopes = np.array([moments.across, moments.along])
-    smallest = np.sqrt(4.0 / slopes) * moments.height / films[:, None]
-    smallest = 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
+    smallest = smallest_contacts(spec, strips)
     spacings = np.array([surface_grid(spec, widest, tuple(size))[1] for size in smallest])
     at_once = AT_ONCE if is_answered else len(strips)
     for spacing in np.unique(spacings, axis=0):
@@ -270,6 +265,31 @@ def _on_alike_grids(spec, strips):
         surface = rough_surface(spec, widest, tuple(smallest[alike[0]]), multiple=multiple)
         for first in range(0, alike.size, at_once):
             yield surface, alike[first : first + at_once]
+
+
+def smallest_contacts(spec: LineSpecLike, strips: Sequence[StripFilm]) -> Array:
+    """Find the sizes of the smallest contacts in some strips along the rollers and along rolling.
+
+    They are those of parabolas as high as the mean summit above the film, rounded down to powers of
+    the root of two, so that strips share surfaces.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        As in `surface_contact`.
+    strips : sequence of StripFilm
+        The strips.
+
+    Returns
+    -------
+    numpy.ndarray, shape (strips, 2)
+        Sizes, m.
+    """
+    moments = surface_moments(spec)
+    films = np.array([strip.films(strip.width / COLUMNS).min() for strip in strips])
+    slopes = np.array([moments.across, moments.along])
+    smallest = np.sqrt(4.0 / slopes) * moments.height / films[:, None]
+    return 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
 
 
 def _finest(surface, strips):

@@ -12,13 +12,13 @@ import scipy.ndimage
 import xarray as xr
 
 from lube.contact.surface_answers import COARSEST
-from lube.contact.surface_strip import mean_breaking_curvature, strip_films
+from lube.contact.surface_strip import mean_breaking_curvature, smallest_contacts, strip_films
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
-from lube.surfaces.rough_surface import on_coarser_grid, rough_surface
+from lube.surfaces.rough_surface import UNRESOLVED, on_coarser_grid, rough_surface
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 
@@ -64,8 +64,11 @@ def surface_traces(
     widest = 2.0 * film["contact_half_width"].max().item()
     check_surfaces(spec, length, widest, gap)
     strips = strip_films(spec, film, gap)
-    wide = max([widest, *(strip.width for strip in strips if strip)])
-    surface = rough_surface(spec, wide, multiple=2**COARSEST if gap.is_answered else 1)
+    some = [strip for strip in strips if strip]
+    wide = max([widest, *(strip.width for strip in some)])
+    smallest = tuple(smallest_contacts(spec, some).min(axis=0)) if some else UNRESOLVED
+    multiple = 2**COARSEST if gap.is_answered else 1
+    surface = rough_surface(spec, wide, smallest, multiple=multiple)
     down, along = surface.spacing
     sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
     with one_blas_thread():

@@ -269,9 +269,9 @@ def test_a_layer_that_often_holds_is_judged_on_all_strips_where_contact_is_certa
 @pytest.mark.parametrize(
     ("film_shape", "slip", "lay"),
     [
-        ("flat", 0.0, "without a lay"),
+        pytest.param("flat", 0.0, "without a lay", marks=pytest.mark.slow),
         ("computed", 0.0, "without a lay"),
-        ("computed", 0.4, "without a lay"),
+        pytest.param("computed", 0.4, "without a lay", marks=pytest.mark.slow),
         ("computed", 0.4, "at an angle"),
     ],
 )

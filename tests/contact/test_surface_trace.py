@@ -6,7 +6,12 @@ import scipy.ndimage
 import xarray as xr
 
 from lube.contact import surface_trace
-from lube.contact.surface_strip import mean_breaking_curvature, surface_contact
+from lube.contact.surface_strip import (
+    mean_breaking_curvature,
+    smallest_contacts,
+    strip_films,
+    surface_contact,
+)
 from lube.contact.surface_trace import surface_traces
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
@@ -39,7 +44,8 @@ def test_contacts_are_those_of_surfaces_moved_by_hand(study, make_spec, slip, la
         operating_point=0
     )
     width = 2.0 * film["contact_half_width"].item()
-    surface = rough_surface(spec, width)
+    strips = strip_films(spec, film, PLAIN)
+    surface = rough_surface(spec, width, tuple(smallest_contacts(spec, strips)[0]))
     rows, columns = int(LENGTH / surface.spacing[0]), int(width / surface.spacing[1])
     sharp = mean_breaking_curvature(film["reduced_modulus"].item(), study.boundary_layer)
     near = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
@@ -88,9 +94,9 @@ def test_contacts_are_those_of_surfaces_moved_by_hand(study, make_spec, slip, la
     [
         (PLAIN, 0.0),
         (PLAIN, 1.0),
+        (Gap("computed", "computed"), 0.4),
         (Gap("computed", "none"), 0.0),
-        (Gap("computed", "computed"), 0.0),
-        (Gap("flat", "computed"), 0.4),
+        pytest.param(Gap("flat", "computed"), 0.4, marks=pytest.mark.slow),
     ],
 )
 def test_the_strip_touches_as_often_as_by_sampling(study, make_spec, monkeypatch, gap, slip):
@@ -105,7 +111,7 @@ def test_the_strip_touches_as_often_as_by_sampling(study, make_spec, monkeypatch
         half = 0.5 * (sampled[f"{name}_upper"] - sampled[f"{name}_lower"]).values
         error = np.hypot(np.std(values, axis=0, ddof=1) / 16**0.5, 0.5 * half)
         # The ends of the pieces cut some contacts in two.
-        allowed = 3.0 * error + 0.08 * sampled[name].values
+        allowed = 3.0 * error + 0.03 * sampled[name].values
         assert np.all(np.abs(np.mean(values, axis=0) - sampled[name].values) < allowed)
         assert np.all(error < 0.15 * sampled[name].values)
 
