@@ -5,7 +5,7 @@ import pandas as pd
 import xarray as xr
 
 from lube.physics.indicators import LOAD_SHARES, RESISTANCE_FORMULAS
-from lube.schema import COORDINATES, FILES, REGIMES
+from lube.schema import COORDINATES, FILES, LIMITS, REGIMES
 
 _CUSTOMARY = {
     "m": ("um", 1e6),
@@ -20,6 +20,7 @@ _CUSTOMARY = {
 }
 """By SI unit, or by variable: the customary unit, and how many of it are one SI unit."""
 _TAIL, _WHOLE = "by importance sampling", "of the whole duty cycle"
+_ONE, _ASSUMED = f"{_WHOLE}, of one pair", "5 to 95 % over what is not known exactly"
 _OF_NO_FILE = {
     "radius": ("radius of the first roller", "m"),
     "second_radius": ("radius of the second roller", "m"),
@@ -29,15 +30,15 @@ _OF_NO_FILE = {
     "viscosity_ratio": ("viscosity ratio of a rolling bearing, kappa", "1"),
     "roughness_factor": ("factor on the roughness of both rollers", "1"),
     "position": ("position from the line of centres", "m"),
-    "assumed_breakthrough_probability": (
-        "breakthrough probability, 5 to 95 % over what is not known exactly",
-        "1",
-    ),
+    "assumed_breakthrough_probability": (f"breakthrough probability, {_ASSUMED}", "1"),
     "half_width": ("expected half-width of the 95 % interval, relative to the quantity", "1"),
     "reading_error": ("relative error of the share that the rig reads", "1"),
     "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
+    "whole_probability_pair": (f"breakthrough probability {_ONE}", "1"),
+    "whole_assumed_probability": (f"breakthrough probability {_WHOLE}, {_ASSUMED}", "1"),
     "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
     "whole_surface_probability": (f"breakthrough probability of the surface {_WHOLE}", "1"),
+    "whole_surface_probability_pair": (f"breakthrough probability of the surface {_ONE}", "1"),
     "whole_surface_rate": (f"breakthroughs per time on the surface {_WHOLE}", "s-1"),
     "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
 }
@@ -73,6 +74,12 @@ _WORDS |= {
     variable_of(name, one): (f"{_WORDS[name][0]}, {one}", _WORDS[name][1])
     for name, formulas in _FORMULAS.items()
     for one in formulas
+}
+
+_WORDS |= {
+    f"assumed_{name}": (f"{words}, {_ASSUMED}", si)
+    for name, (words, si) in _WORDS.items()
+    if f"assumed_{name}" not in _WORDS and not name.endswith(LIMITS[1:])
 }
 
 

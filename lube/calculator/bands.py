@@ -1,23 +1,20 @@
 """The band of an answer over quantities that are not known exactly."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
 
-from lube.calculator.arguments import Choices, conditions
+from lube.calculator.arguments import Choices
 from lube.calculator.parts import Oil, Rollers
 from lube.errors import StudyError, shown
-from lube.schema import POINT_DIMS
-from lube.sensitivity.conditions import Deviating
-from lube.sensitivity.predictor import BAND, is_chosen
-from lube.sensitivity.runs import models, run
-from lube.sensitivity.samples import deviations, quantiles
+from lube.schema import LIMITS, POINT_DIMS
 from lube.study.field_types import validate
 from lube.study.operating_grid import OperatingGrid
 from lube.study.study import Study
 from lube.study.uncertainty import Uncertainty
+from lube.types import Array, Values
 
 SAMPLES = {"line": 128, "surface": 32}
 """Numbers of samples by contact model, powers of 2; surfaces take long to draw."""
@@ -38,85 +35,124 @@ RANGES = {
 """Ranges of an answer if none are given, in the form of a study's section ``uncertainty``."""
 
 
-def assumed_limits(
-    rollers: Rollers,
-    oil: Oil,
-    given: tuple,
-    choices: Choices,
-    bands: bool | Mapping,
-    film_formula: str,
-    slip: float,
-    seed: int,
-) -> dict[str, xr.DataArray]:
-    """Find the band of the probability of breakthrough over what is not known exactly.
+class Assumptions:
+    """What an answer does not know exactly, and the probability of breakthrough over it.
 
     It is over `RANGES`, which are of quantities: the choices of the model are those of the answer
     unless `bands` has them.
 
     Parameters
     ----------
+    bands : bool or mapping
+        True for `RANGES`, or ranges in the form of a study's section ``uncertainty``; False for no
+        band.
     rollers, oil
         As in `lube.contact_probability`.
-    given : tuple
-        Its force, speed and temperature.
     choices : Choices
         Model; of several contact models the first.
-    bands : bool or mapping
-        True for `RANGES`, or ranges in the form of a study's section ``uncertainty``.
-    film_formula, slip, seed
+    film_formula, seed
         As in `lube.contact_probability`.
+    left_out : sequence of str, optional
+        Factors, or groups of them, on which the answer does not depend: their ranges are ignored.
 
-    Returns
-    -------
-    dict of str to xarray.DataArray
-        ``assumed_breakthrough_probability_lower`` and ``_upper``, below which 5 and 95 % of
-        `SAMPLES` samples lie; NaN where a film is not known.
+    Attributes
+    ----------
+    wanted : bool
+        Whether there is a band.
 
     Raises
     ------
     StudyError
         Which range, what came, what is needed.
     """
-    if not isinstance(bands, bool | Mapping):
-        raise StudyError(f"bands: got {shown(bands)}, need True, False or a dict of ranges")
-    ranges = RANGES if bands is True else dict(bands)
-    uncertain = validate(Uncertainty, ranges, "bands", StudyError)
-    levels = conditions(*given, rollers.pair.first.radius)
-    force, speed, temperature = xr.broadcast(*levels)
-    names = {"force": force, "speed": speed, "temperature": temperature}
-    study = _study(rollers, oil, names, choices, film_formula, slip, seed, uncertain)
-    deviating = Deviating.of(study, "bands")
-    points = xr.Dataset({name: ("point", values.values.ravel()) for name, values in names.items()})
-    points["lubricant"] = "point", np.full(points.sizes["point"], oil.record.name)
-    unit = quantiles(SAMPLES[choices.models[0]], len(deviating.factors), seed)
-    found = _probabilities(deviating, unit, points[list(POINT_DIMS)])
-    limits = np.quantile(found, BAND, axis=0)
-    return {
-        f"assumed_breakthrough_probability_{end}": force.copy(data=limit.reshape(force.shape))
-        for end, limit in zip(("lower", "upper"), limits, strict=True)
-    }
 
+    def __init__(
+        self,
+        bands: bool | Mapping,
+        rollers: Rollers,
+        oil: Oil,
+        choices: Choices,
+        film_formula: str,
+        seed: int,
+        left_out: Sequence[str] = (),
+    ) -> None:
+        if not isinstance(bands, bool | Mapping):
+            raise StudyError(f"bands: got {shown(bands)}, need True, False or a dict of ranges")
+        self.wanted = bands is not False
+        ranges = RANGES if bands is True else dict(bands or {})
+        uncertain = validate(Uncertainty, ranges, "bands", StudyError)
+        for factor in uncertain.factors():
+            if factor.name in left_out or factor.group in left_out:
+                uncertain = uncertain.model_copy(update={factor.name: None})
+        if self.wanted and not uncertain.factors():
+            needed = "need an uncertain quantity or choice on which the answer depends"
+            raise StudyError(f"bands: got {' and '.join(ranges) or 'none'}, {needed}")
+        # The study of the answer, as far as `lube.sensitivity` needs it.
+        self._study = Study.model_construct(
+            lubricants=(oil.record,),
+            rollers=rollers.given_pair,
+            roughness=rollers.roughness,
+            boundary_layer=rollers.layer,
+            film_formulas=(film_formula,),
+            **asdict(choices.gap),
+            load_sharing=choices.load_sharing,
+            contact_model=choices.models,
+            seed=seed,
+            uncertainty=uncertain,
+        )
 
-def _study(rollers, oil, conditions_, choices, film_formula, slip, seed, uncertain):
-    """Study of the answer, as far as `lube.sensitivity` needs it."""
-    levels = {name: tuple(np.unique(values).tolist()) for name, values in conditions_.items()}
-    return Study.model_construct(
-        lubricants=(oil.record,),
-        rollers=rollers.given_pair,
-        roughness=rollers.roughness,
-        boundary_layer=rollers.layer,
-        film_formulas=(film_formula,),
-        operating_grid=OperatingGrid.model_construct(**levels, slide_to_roll_ratio=(slip,)),
-        **asdict(choices.gap),
-        load_sharing=choices.load_sharing,
-        contact_model=choices.models,
-        seed=seed,
-        uncertainty=uncertain,
-    )
+    def study(self, levels: Mapping[str, Array]) -> Study:
+        """Study of the answer with some levels of force, speed and temperature."""
+        grid = {name: tuple(np.unique(levels[name]).tolist()) for name in POINT_DIMS[1:]}
+        grid = OperatingGrid.model_construct(**grid, slide_to_roll_ratio=(0.0,))
+        return self._study.model_copy(update={"operating_grid": grid})
+
+    def probabilities(self, points: Mapping[str, Values]) -> xr.DataArray:
+        """Find the probability of breakthrough of all samples at some operating points.
+
+        All points have the same samples.
+
+        Parameters
+        ----------
+        points : mapping of str to xarray.DataArray
+            ``force``, N, ``speed``, rpm, and ``temperature``, degC, over any dimensions, and what
+            else `lube.sensitivity.conditions.Deviating.films` takes.
+
+        Returns
+        -------
+        xarray.DataArray
+            Of `SAMPLES` samples over sample and the dimensions of the points; NaN where a film is
+            not known.
+        """
+        # These are slow to import.
+        from lube.sensitivity.conditions import Deviating
+        from lube.sensitivity.samples import quantiles
+
+        points = dict(zip(points, xr.broadcast(*map(xr.DataArray, points.values())), strict=True))
+        study, force = self.study(points), points["force"]
+        deviating = Deviating.of(study, "bands")
+        runs = xr.Dataset({name: ("point", each.values.ravel()) for name, each in points.items()})
+        runs["lubricant"] = "point", np.full(force.size, study.lubricants[0].name)
+        count = SAMPLES[study.contact_model[0]]
+        unit = quantiles(count, len(deviating.factors), study.seed)
+        found = _probabilities(deviating, unit, runs).reshape(count, *force.shape)
+        return force.expand_dims(sample=count).copy(data=found)
+
+    @staticmethod
+    def limits(samples: xr.DataArray, name: str) -> dict[str, xr.DataArray]:
+        """Name the limits below which 5 and 95 % of some samples lie."""
+        from lube.sensitivity.predictor import BAND
+
+        limits = zip(LIMITS[1:], np.quantile(samples, BAND, axis=0), strict=True)
+        return {f"{name}{end}": samples[0].copy(data=limit) for end, limit in limits}
 
 
 def _probabilities(deviating, unit, points):
     """Probability of breakthrough of all samples at some points, shape (samples, points)."""
+    from lube.sensitivity.predictor import is_chosen
+    from lube.sensitivity.runs import models, run
+    from lube.sensitivity.samples import deviations
+
     number = points.sizes["point"]
     samples = np.repeat(unit, number, axis=0)
     runs = points.isel(point=np.tile(np.arange(number), len(unit))).rename(point="run")

@@ -19,6 +19,7 @@ from lube.calculator.arguments import (
     check_realisations,
     one_name,
 )
+from lube.calculator.bands import Assumptions
 from lube.calculator.operating_points import (
     FILM_VARIABLES,
     ensemble,
@@ -29,6 +30,7 @@ from lube.calculator.operating_points import (
     with_remarks,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.ensemble import with_pair_limits
 from lube.errors import DataError, located, right_one, shown
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
@@ -50,6 +52,7 @@ _COLUMNS = {
 """Columns of a table of duty points, each with the unit that it is converted to."""
 _NUMBER = re.compile(r"\s*[-+]?[\d.]+\s*([ %]|$)")
 """Beginning of a number with or without unit, but not of a name such as ``2nd gear``."""
+_OF_PAIR = "probability_pair_lower", "probability_pair_upper"
 _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed")
 
 
@@ -66,6 +69,7 @@ def duty(
     contact_model: ContactModel | Sequence[ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
+    bands: bool | Mapping[str, Any] = False,
 ) -> Answer:
     """Film and probability of contact at each point of a duty cycle, and over the cycle.
 
@@ -88,6 +92,9 @@ def duty(
         The oil.
     film_formula, film_shape, roughness_deformation, load_sharing, contact_model, realisations, seed
         As in `lube.contact_probability`.
+    bands : bool or dict, optional
+        As in `lube.contact_probability`. All points of a sample share its deviations, as they have
+        one oil, one pair of rollers and one thermometer.
 
     Returns
     -------
@@ -99,8 +106,11 @@ def duty(
         limits are those of the mean over pairs of rollers. All points have the same pairs, so the
         whole cycle is computed on each pair first. For the surface they are
         ``whole_surface_probability`` and ``whole_surface_rate``, with limits as wide as if the
-        errors at all points were the same. The attribute ``remarks`` is as in
-        `lube.contact_probability`.
+        errors at all points were the same. Limits for one pair, as at each point, are
+        ``whole_probability_pair_lower`` and ``_pair_upper``, and those that begin with
+        ``whole_surface_probability_pair``. With `bands` also ``whole_assumed_probability_lower``
+        and ``_upper``, between which 90 % of the cycle's means over pairs lie. The attribute
+        ``remarks`` is as in `lube.contact_probability`.
 
     Raises
     ------
@@ -126,8 +136,9 @@ def duty(
     choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
     gap = choices.gap
     check_realisations(realisations, seed)
-    slip = _slip(columns)
-    table = _film(columns, rollers, oil, film_formula, film_model(rollers, choices, slip))
+    formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
+    assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)
+    table = _film(given, rollers, oil, formula, film_model(rollers, choices, slip))
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
     if "line" in choices.models:
         contact = ensemble(table, rollers, realisations, seed, gap=gap)
@@ -137,9 +148,16 @@ def duty(
         parts = joined(table, contact, on_pairs)
     if "surface" in choices.models:
         parts = parts.assign(of_surface(table, rollers, seed, gap, slip))
-        for name in [f"{kind}{end}" for kind in ("probability", "rate") for end in LIMITS]:
+        kinds = [f"{kind}{end}" for kind in ("probability", "rate") for end in LIMITS]
+        for name in (*kinds, *_OF_PAIR):
             of_points = parts[f"surface_breakthrough_{name}"]
             whole[f"whole_surface_{name}"] = (of_points * share).sum(skipna=False)
+    if assumed.wanted:
+        samples = assumed.probabilities(given | {"slide_to_roll_ratio": slip})
+        parts = parts.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
+        # Weighted first: the samples are the same at all points.
+        of_cycle = (samples * share).sum("point", skipna=False)
+        whole |= assumed.limits(of_cycle, "whole_assumed_probability")
     found = columns | {"share": share} | dict(parts.data_vars) | whole
     found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers)
     for name in labels.keys() & found.variables.keys():
@@ -161,29 +179,38 @@ def _whole(contact, on_pairs, share, windows):
     # Summed on each pair of lines first: the lines are the same at all points.
     sampled = pair_limits((on_pairs * share).sum("point", skipna=False))
     whole = values_with_limits("whole_probability", limits)
+    on_pair = counted.to_dataset(name="breakthrough_probability")
+    of_pair = with_pair_limits(on_pair, xr.DataArray(windows))
+    whole |= {f"whole_{name}": of_pair[f"breakthrough_{name}"] for name in _OF_PAIR}
     for end in LIMITS:
         whole[f"whole_tail_probability{end}"] = sampled[f"breakthrough_probability{end}"]
         whole[f"whole_tail_rate{end}"] = sampled[f"breakthrough_rate{end}"]
     return whole
 
 
-def _film(columns, rollers, oil, film_formula, choices):
-    """Film table over ``point``, with the radii of each point."""
-    pair = rollers.pair
-    radius = columns.get("radius", pair.first.radius)
-    second_radius = columns.get("second_radius", pair.second.radius)
-    first = pair.first.model_copy(update={"radius": radius})
-    second = pair.second.model_copy(update={"radius": second_radius})
-    own = pair.model_copy(update={"first": first, "second": second})
+def _conditions(columns, rollers):
+    """Force in N, speed in rpm, temperature in degC and radii in m of each point."""
+    radius = columns.get("radius", rollers.pair.first.radius)
     if (rotation := columns.get("speed")) is None:
         if (entrainment := columns.get("entrainment_speed")) is None:
             entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
         rotation = entrainment * 60.0 / (2.0 * np.pi * radius)
-    formulas = [one_name("film_formula", film_formula)]
-    point = columns["force"], rotation, columns["temperature"]
-    table = film_of_oil(oil, own, point, formulas, **choices)
+    return {
+        "force": columns["force"],
+        "speed": rotation,
+        "temperature": columns["temperature"],
+        "radius": radius,
+        "second_radius": columns.get("second_radius", rollers.pair.second.radius),
+    }
+
+
+def _film(given, rollers, oil, film_formula, choices):
+    """Film table over ``point``, with the radii of each point."""
+    *point, radius, second_radius = given.values()
+    pair = rollers.pair.with_radii(radius, second_radius)
+    table = film_of_oil(oil, pair, point, [film_formula], **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
-    return table.assign(force=columns["force"])
+    return table.assign(force=given["force"])
 
 
 def _columns(points):

@@ -6,6 +6,8 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.arguments import Choices, bare_number, check_realisations
+from lube.calculator.bands import Assumptions
+from lube.calculator.operating_points import conditions_of
 from lube.calculator.parts import Rollers
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
@@ -26,6 +28,8 @@ NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
 """Lambda ratios of the second look, over the one at which the first look finds the share."""
 AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
 """The same if the film has a shape or the oil changes the lines, which the first look ignores."""
+BROAD = np.exp(np.linspace(-1.0, 1.0, 11))
+"""The same for the limits over what is not known exactly."""
 FALLING = 0.9
 """Share, relative to the largest probability, below which it is well on the falling branch."""
 OFTEN = 10.0
@@ -52,10 +56,18 @@ class FilmSearch:
         As in `lube.contact_probability`.
     choices : Choices
         With a single contact model; the oil carries the whole load.
+    assumed : Assumptions
+        What is not known exactly; if wanted, adds the limits over it to all that is found.
     """
 
     def __init__(
-        self, rollers: Rollers, share: float, realisations: int, seed: int, choices: Choices
+        self,
+        rollers: Rollers,
+        share: float,
+        realisations: int,
+        seed: int,
+        choices: Choices,
+        assumed: Assumptions,
     ) -> None:
         if len(choices.models) > 1:
             raise StudyError(f"contact_model: got {shown(list(choices.models))}, need one name")
@@ -63,7 +75,7 @@ class FilmSearch:
         self.choices = choices
         self._on_surface = "surface" in self.choices.models
         self._realisations = check_realisations(realisations, seed)
-        self._rollers, self._seed = rollers, seed
+        self._rollers, self._seed, self._assumed = rollers, seed, assumed
         if not self._on_surface:
             rollers.lines.check_follows_rolling()
         self._sigma = rollers.pair.composite_rms_roughness
@@ -80,7 +92,8 @@ class FilmSearch:
         tried : str
             These levels in words.
         """
-        whole = table(levels, replace(self.choices, gap=PLAIN))
+        plain = replace(self.choices, gap=PLAIN)
+        whole = table(levels, plain)
         for name, size in whole["film_thickness"].sizes.items():
             if size != levels.size:
                 raise StudyError(f"{name}: got {size} values, need one")
@@ -88,21 +101,27 @@ class FilmSearch:
         known = np.flatnonzero(np.isfinite(ratios))
         known = known[np.argsort(ratios[known])]
 
-        def table_at(sought):
+        def table_at(sought, choices=self.choices):
             here = np.interp(sought, ratios[known], known)
-            return table(np.interp(here, np.arange(levels.size), levels), self.choices)
+            return table(np.interp(here, np.arange(levels.size), levels), choices)
+
+        def points_at(sought):
+            return conditions_of(table_at(sought, plain))
 
         ends = ratios[known[[0, -1]]]
-        films = self.films(whole["contact_half_width"].item(), table_at, ends)
+        films = self.films(whole["contact_half_width"].item(), points_at, table_at, ends)
         return films, _reached(films, whole, levels, tried)
 
-    def films(self, half_width, table_at=None, ends=(0.0, np.inf), own=None):
+    def films(self, half_width, points_at, table_at=None, ends=(0.0, np.inf), own=None):
         """Find the films at which the probability, its lower and its upper limit equal the share.
 
         Parameters
         ----------
         half_width : float
             Half-width of the contact, m.
+        points_at : callable
+            Operating points at some lambda ratios, as `lube.calculator.bands.Assumptions` takes
+            them.
         table_at : callable, optional
             Film table at some lambda ratios, for films with a shape and for lines that the oil
             flattens or answers.
@@ -123,7 +142,23 @@ class FilmSearch:
                 f"share: got {self._share:g}, which no film has: the largest share is "
                 f"{limits[0][peak]:.3g}, at a lambda ratio of {ratios[peak]:.2g}"
             )
+        if self._assumed.wanted:
+            found = np.append(found, self._over_assumptions(found[0], points_at, ends))
         return {"film_thickness": self._sigma * found, "lambda_ratio": found}
+
+    def _over_assumptions(self, found, points_at, ends):
+        """Find the films that 5 and 95 % of the samples need at most.
+
+        Each sample touches less under a thicker film. So 95 % need less than the film at which the
+        probability is below the share in 95 % of them.
+        """
+        ratios = np.unique(np.clip(found * BROAD, *ends))
+        samples = self._assumed.probabilities(points_at(ratios))
+        limits = np.stack(list(self._assumed.limits(samples, "share").values()))
+        known = np.isfinite(limits).all(axis=0)
+        if not known.any():
+            return np.full(2, np.nan)
+        return [self._crossing(ratios[known], each[known]) for each in limits]
 
     def _at_lines(self, half_width, table_at, ends, own):
         """Films near the one sought, and the probability on lines there, with its limits."""

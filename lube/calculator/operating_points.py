@@ -17,6 +17,7 @@ from lube.calculator.arguments import (
     check_realisations,
     conditions,
 )
+from lube.calculator.bands import Assumptions
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import with_limits, with_pair_limits
 from lube.contact.surface_strip import surface_contact
@@ -279,6 +280,7 @@ def contact_probability(
     gap = choices.gap
     check_realisations(realisations, seed)
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
+    assumed = Assumptions(bands, rollers, oil, choices, np.ravel(film_formula)[0], seed)
     found = table[FILM_VARIABLES]
     if "line" in choices.models:
         contact = ensemble(table, rollers, realisations, seed, slip, gap)
@@ -288,14 +290,16 @@ def contact_probability(
         found = found.assign(of_surface(table, rollers, seed, gap, slip))
     if "surface_load_share" in table:
         found["surface_load_share"] = table["surface_load_share"]
-    if bands is not False:
-        # Imports of the sensitivity study are slow.
-        from lube.calculator.bands import assumed_limits
-
-        point, formula = (force, speed, temperature), np.ravel(film_formula)[0]
-        limits = assumed_limits(rollers, oil, point, choices, bands, formula, slip, seed)
-        found = found.assign(limits)
+    if assumed.wanted:
+        points = conditions_of(table) | {"slide_to_roll_ratio": slip}
+        samples = assumed.probabilities(points)
+        found = found.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
     return with_remarks(found, table, rollers)
+
+
+def conditions_of(table: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Force in N, speed in rpm and temperature in degC of a table from `film_in_si`."""
+    return {name: table[name] for name in ("force", "speed", "temperature")}
 
 
 def of_surface(

@@ -5,6 +5,9 @@ lie where the limits of the probability do. So the 95 % interval is that of the 
 rollers. The oil carries the whole load: films that keep contact rare leave little to asperities.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -19,17 +22,21 @@ from lube.calculator.arguments import (
     rotation_speed,
     single,
 )
+from lube.calculator.bands import Assumptions
 from lube.calculator.film_search import FilmSearch
-from lube.calculator.operating_points import film_in_si
+from lube.calculator.operating_points import conditions_of, film_in_si
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.grid.film_profiles import shaped_films
-from lube.schema import values_with_limits
+from lube.grid.film_profiles import scaled_film
+from lube.schema import LIMITS, values_with_limits
 from lube.types import ContactModel, FilmShape, OneAmount, RoughnessDeformation
 
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
 TEMPERATURES = 241
 """Number of temperatures that are tried in the range of the lubricant record."""
+_ANY_OIL, _ANY = "mobilgear-shc-xmp-320", {"speed": 100.0, "temperature": 60.0}
+"""Oil, speed in rpm and temperature in degC of a film that is given and depends on none of them."""
+_HEIGHTS = "rms_roughness", "first_rms_roughness", "second_rms_roughness"
 
 
 @with_parts
@@ -41,6 +48,7 @@ def required_film(
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
+    bands: bool | Mapping[str, Any] = False,
 ) -> Answer:
     """Film thickness that keeps metal contact below a share of time.
 
@@ -56,11 +64,19 @@ def required_film(
         ``"line"`` or ``"surface"``, as in `lube.contact_probability`; the surface takes a minute.
     realisations, seed : int, optional
         As in `lube.contact_probability`.
+    bands : bool or dict, optional
+        Whether to find the band of the answer over what is not known exactly; ranges are as in
+        `lube.contact_probability`. The range of what is sought is left out, and here also those of
+        oil, film formula, speed and temperature, on which the film sought does not depend. It takes
+        some ten seconds, and some minutes for surfaces.
 
     Returns
     -------
     Answer
-        ``film_thickness`` (um) and ``lambda_ratio``, each with ``_lower`` and ``_upper``.
+        ``film_thickness`` (um) and ``lambda_ratio``, each with ``_lower`` and ``_upper``. With
+        `bands` also, as in the other functions, ``assumed_film_thickness_lower`` and so on: between
+        them lie the answers of 90 % of the samples. They are zero or infinite if they do not lie
+        within films of 0.37 to 2.7 times the one found.
 
     Raises
     ------
@@ -75,10 +91,17 @@ def required_film(
     True
     """
     choices = Choices.of("flat", "none", "none", contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
+    left_out = "oil", "film", "speed", "temperature"
+    assumed = Assumptions(bands, rollers, Oil(_ANY_OIL), choices, FORMULA, seed, left_out)
+    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
     force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
-    return _labelled(search.films(half_width))
+
+    def points_at(ratios):
+        film = xr.DataArray(ratios * rollers.pair.composite_rms_roughness, dims="film")
+        return _ANY | {"force": force, "film_thickness": film}
+
+    return _labelled(search.films(half_width, points_at))
 
 
 @with_parts
@@ -96,6 +119,7 @@ def required_viscosity(
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
+    bands: bool | Mapping[str, Any] = False,
 ) -> Answer:
     """Viscosity that keeps metal contact below a share of time.
 
@@ -106,6 +130,9 @@ def required_viscosity(
         the density are those of the oil at that temperature.
     share, contact_model, realisations, seed
         As in `required_film`.
+    bands
+        As in `required_film`; the range of the viscosity is left out. Film and lambda ratio at the
+        limits are those of the other quantities as given.
 
     Returns
     -------
@@ -127,7 +154,8 @@ def required_viscosity(
         return film_in_si(rollers, oil, force, speeds, temperature, one, choices)
 
     choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
+    assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
+    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
     properties = oil.at(amount("temperature", temperature, "degC"))
@@ -150,6 +178,7 @@ def required_speed(
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
+    bands: bool | Mapping[str, Any] = False,
 ) -> Answer:
     """Speed that keeps metal contact below a share of time.
 
@@ -159,6 +188,8 @@ def required_speed(
         As in `lube.contact_probability`, one value of each.
     share, contact_model, realisations, seed
         As in `required_film`.
+    bands
+        As in `required_viscosity`; the range of the speed is left out.
 
     Returns
     -------
@@ -177,7 +208,8 @@ def required_speed(
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
 
     choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
+    assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
+    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -197,6 +229,7 @@ def required_temperature(
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
+    bands: bool | Mapping[str, Any] = False,
 ) -> Answer:
     """Highest temperature at which metal contact stays below a share of time.
 
@@ -206,6 +239,8 @@ def required_temperature(
         As in `lube.contact_probability`, one value of each.
     share, contact_model, realisations, seed
         As in `required_film`.
+    bands
+        As in `required_viscosity`; the range of the temperature is left out.
 
     Returns
     -------
@@ -224,7 +259,8 @@ def required_temperature(
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
 
     choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
+    assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
+    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -245,6 +281,7 @@ def required_roughness(
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
+    bands: bool | Mapping[str, Any] = False,
 ) -> Answer:
     r"""Roughness that keeps metal contact below a share of time.
 
@@ -258,6 +295,8 @@ def required_roughness(
         As in `lube.contact_probability`, one value of each.
     share, contact_model, realisations, seed
         As in `required_film`.
+    bands
+        As in `required_viscosity`; the ranges of the rms roughness are left out.
 
     Returns
     -------
@@ -270,24 +309,26 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
     one = one_name("film_formula", film_formula)
+    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
+    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
     film = film_in_si(rollers, oil, force, speed, temperature, one, search.choices)
     own = single(film["lambda_ratio"])
 
     def table_at(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
-        scale = xr.DataArray(ratios / own, dims="film")
-        scaled = {"film_thickness": scale * film["film_thickness"]}
-        if search.choices.gap.has_shape:
-            scaled["film_profile"] = scale * shaped_films(film)
-        return film.assign(scaled)
+        return scaled_film(film, xr.DataArray(ratios / own, dims="film"))
 
-    found = search.films(film["contact_half_width"].item(), table_at, own=own)
+    def points_at(ratios):
+        factor = xr.DataArray(own / ratios, dims="film")
+        return conditions_of(film) | {"roughness_factor": factor}
+
+    found = search.films(film["contact_half_width"].item(), points_at, table_at, own=own)
     ratios = found["lambda_ratio"]
-    sigma = rollers.pair.composite_rms_roughness * own / ratios
-    found = {"roughness_factor": own / ratios, "composite_rms_roughness": sigma}
+    with np.errstate(divide="ignore"):  # a limit may be 0
+        sigma, factor = rollers.pair.composite_rms_roughness * own / ratios, own / ratios
+    found = {"roughness_factor": factor, "composite_rms_roughness": sigma}
     return _labelled(found | {"lambda_ratio": ratios})
 
 
@@ -295,5 +336,7 @@ def _labelled(found):
     """Answer of values and their limits, the smaller limit first."""
     rows = {}
     for name, (value, *limits) in found.items():
-        rows |= values_with_limits(name, [value, *np.sort(limits)])
+        rows |= values_with_limits(name, [value, *np.sort(limits[:2])])
+        assumed = zip(LIMITS[1:], np.sort(limits[2:]), strict=False)
+        rows |= {f"assumed_{name}{end}": limit for end, limit in assumed}
     return described(xr.Dataset(rows))

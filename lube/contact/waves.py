@@ -185,9 +185,8 @@ def answers_at(film: xr.Dataset, has_shape: bool, kind: type[Answer] = Answer) -
     response = film[f"{kind.response}_real"] + 1j * film[f"{kind.response}_imaginary"]
     names = [*kind.waves, "response_position"]
     *_, position = levels = [response[name].values for name in names]
-    radius, roughness = film["reduced_radius"].item(), film["composite_rms_roughness"].item()
 
-    def of_both(response, half_width):
+    def of_both(response, half_width, radius, roughness):
         gap = hertz_gap(position) * (half_width**2 / radius)
         importance = np.exp(-gap / roughness) if has_shape else np.abs(position) <= 1.0
         answers = np.full(2, None)
@@ -199,9 +198,12 @@ def answers_at(film: xr.Dataset, has_shape: bool, kind: type[Answer] = Answer) -
                     answers[roller] = kind.of(one, levels, half_width, importance)
         return answers
 
-    core = {"input_core_dims": [["roller", *names], []], "output_core_dims": [["roller"]]}
-    widths, options = film["contact_half_width"], {"vectorize": True, "output_dtypes": [object]}
-    return xr.apply_ufunc(of_both, response, widths, **core, **options)
+    contact = (
+        film[name] for name in ("contact_half_width", "reduced_radius", "composite_rms_roughness")
+    )
+    core = {"input_core_dims": [["roller", *names], [], [], []], "output_core_dims": [["roller"]]}
+    options = {"vectorize": True, "output_dtypes": [object]}
+    return xr.apply_ufunc(of_both, response, *contact, **core, **options)
 
 
 def lifted(

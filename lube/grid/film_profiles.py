@@ -126,6 +126,14 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
     return shaped.transpose(*film["film_thickness"].dims, "film_position")
 
 
+def scaled_film(film: xr.Dataset, factor: xr.DataArray) -> xr.Dataset:
+    """Multiply films by a factor, with their shape and the gap around the contact if known."""
+    scaled = {"film_thickness": factor * film["film_thickness"]}
+    if "film_profile" in film:
+        scaled["film_profile"] = factor * shaped_films(film)
+    return film.assign(scaled)
+
+
 def film_at_places(film: xr.Dataset) -> xr.DataArray:
     """Find the thickness of the computed film that each film formula refers to.
 

@@ -10,6 +10,7 @@ import scipy.fft
 import xarray as xr
 
 from lube.errors import located
+from lube.grid.film_profiles import scaled_film
 from lube.grid.films import film_at
 from lube.grid.levels import rolling
 from lube.physics.pressure_viscosity import roelands_slope
@@ -26,6 +27,8 @@ OIL = (
     "dynamic_viscosity pressure_viscosity_coefficient temperature_viscosity_coefficient "
     "thermal_conductivity"
 ).split()
+GIVEN = "film_thickness", "roughness_factor"
+"""Of operating points: what is given there and not found from the oil."""
 GAUSSIAN = {"skewness": 0.0, "kurtosis": 3.0}
 """Moments of Gaussian heights."""
 NODES = 500
@@ -44,15 +47,15 @@ class DeviatingRollers:
     ----------
     first : lube.study.rollers.Roller
         The first roller.
-    length, reduced_radius : float
+    length : float
         As of `lube.study.rollers.RollerPair`.
-    reduced_modulus, composite_rms_roughness : float or xarray.DataArray
+    reduced_radius, reduced_modulus, composite_rms_roughness : float or xarray.DataArray
         As of `RollerPair`.
     """
 
     first: Roller
     length: float
-    reduced_radius: float
+    reduced_radius: float | xr.DataArray
     reduced_modulus: float | xr.DataArray
     composite_rms_roughness: float | xr.DataArray
 
@@ -139,7 +142,10 @@ class Deviating:
         values : dict of str to xarray.DataArray
             From `lube.sensitivity.samples.deviations`, over run, at least one.
         points : xarray.Dataset
-            ``lubricant``, ``temperature``, ``speed`` and ``force``, over run too, or over point.
+            ``lubricant``, ``temperature``, ``speed`` and ``force``, over run too, or over point;
+            also ``radius`` and ``second_radius``, m, and ``slide_to_roll_ratio`` if they are not
+            the study's. A ``film_thickness``, m, takes the place of the oil's. With a
+            ``roughness_factor`` on all heights films are over that factor.
         **shape
             Further arguments of `lube.grid.films.film_at`.
 
@@ -180,24 +186,30 @@ class Deviating:
         loads = points["force"] * (1.0 + values.get("force", 0.0))
         speeds = points["speed"] * (1.0 + values.get("speed", 0.0))
         table = film_at(
-            *(oil, self._rollers(values), loads, speeds),
+            *(oil, self._rollers(values, points), loads, speeds),
             [formula if shape else STAND_IN.get(formula, formula)],
-            slide_to_roll_ratio=rolling(study.slips),
+            slide_to_roll_ratio=points.get("slide_to_roll_ratio", rolling(study.slips)),
             inlet_shear_heating=heating,
             inlet_meniscus=study.inlet_model["inlet_meniscus"],
             **shape,
         )
         viscosity = oil["dynamic_viscosity"]
-        return table.isel(film_formula=0, drop=True).assign(dynamic_viscosity=viscosity)
+        table = table.isel(film_formula=0, drop=True).assign(dynamic_viscosity=viscosity)
+        table.update({name: points[name] for name in GIVEN if name in points})
+        if "roughness_factor" in table:
+            return scaled_film(table, 1.0 / table["roughness_factor"])
+        return table
 
-    def _rollers(self, values):
+    def _rollers(self, values, points):
         """Return the rollers as far as films depend on them, with values for each run."""
-        study, scale = self.study, 1.0 + values.get("young_modulus", 0.0)
+        pair, scale = self.study.rollers, 1.0 + values.get("young_modulus", 0.0)
+        if "radius" in points:
+            pair = pair.with_radii(points["radius"], points["second_radius"])
         return DeviatingRollers(
-            study.rollers.first,
-            study.rollers.length,
-            study.rollers.reduced_radius,
-            study.rollers.reduced_modulus * scale,
+            pair.first,
+            pair.length,
+            pair.reduced_radius,
+            pair.reduced_modulus * scale,
             self.rms_roughness(values),
         )
 

@@ -173,7 +173,8 @@ def run(
     unit : numpy.ndarray
         As from `design`.
     points : xarray.Dataset
-        ``lubricant``, ``temperature``, ``speed`` and ``force`` of each run, over run.
+        ``lubricant``, ``temperature``, ``speed`` and ``force`` of each run, over run, and what else
+        `Deviating.films` takes.
     threads : int, optional
         Threads that share the work; they do not change the results.
 
@@ -219,9 +220,11 @@ def _probabilities(deviating, model, values, film):
     ratio = film["film_thickness"] / deviating.rms_roughness(values)
     thicker = deviating.equivalent(ratio, values) / ratio
     film["film_thickness"] = film["film_thickness"] * thicker
+    # Under films that are over a factor, lines break as higher ones do if their layer is weaker.
+    weaker = film.get("roughness_factor", 1.0)
     if model.contact_model == "surface":
         given = spec, study.rollers.length, film, layer
-        choices = {"gap": model.gap, "threads": 1, "fewer": FEWER_SURFACES}
+        choices = {"gap": model.gap, "threads": 1, "fewer": FEWER_SURFACES, "weaker": weaker}
         found = []
         for seed in range(SURFACE_SEEDS):
             # The scatter between so few surfaces is not needed.
@@ -229,7 +232,7 @@ def _probabilities(deviating, model, values, film):
                 contact = surface_contact(*given, study.seed + seed, **choices)
             found.append(contact["breakthrough_probability"].values)
         return np.stack([found[seed % SURFACE_SEEDS] for seed in range(SEEDS)], axis=1)
-    windows = ContactWindows(spec, film, layer, model.gap)
+    windows = ContactWindows(spec, film, layer, model.gap, weaker)
 
     def sampled(some, numbers):
         found = [some.sample(spec, study.seed, number)[0][1] for number in numbers]

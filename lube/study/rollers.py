@@ -14,6 +14,7 @@ from lube.physics.hertz import contact_half_width, reduced_modulus, reduced_radi
 from lube.study.field_types import Length, StrictModel, bounded, quantity, quantity_or_words
 from lube.study.roller_topography import RollerTopography
 from lube.study.size_limits import MOST_POINTS
+from lube.types import Values
 from lube.units import parse_number
 
 ROLLERS = ("first", "second")
@@ -206,6 +207,12 @@ class RollerPair(StrictModel):
             known = {"topography": None, "ra_roughness": None, "rms_roughness": rms}
             changed[name] = getattr(self, name).model_copy(update=known)
         return self.model_copy(update=changed)
+
+    def with_radii(self, first: Values, second: Values) -> "RollerPair":
+        """Return the same rollers with other radii, m, also with several of each."""
+        one = self.first.model_copy(update={"radius": first})
+        other = self.second.model_copy(update={"radius": second})
+        return self.model_copy(update={"first": one, "second": other})
 
     @property
     def composite_rms_roughness(self) -> float:

@@ -6,6 +6,7 @@ import pytest
 from studies import OIL
 
 from lube import Oil, Rollers
+from lube.calculator import bands
 
 
 @pytest.fixture(scope="session")
@@ -24,3 +25,11 @@ def rollers(busy):
 @pytest.fixture(scope="session")
 def oil():
     return Oil(OIL)
+
+
+@pytest.fixture(scope="module")
+def few_samples():
+    patch = pytest.MonkeyPatch()
+    patch.setattr(bands, "SAMPLES", {"line": 32, "surface": 4})
+    yield
+    patch.undo()

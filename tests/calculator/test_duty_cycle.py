@@ -6,6 +6,9 @@ import pytest
 
 import lube
 from lube import LubeError, Rollers
+from lube.calculator import bands
+from lube.calculator.arguments import FORMULA, Choices
+from lube.calculator.bands import Assumptions
 
 RUNS = {"realisations": 8, "seed": 2}
 POINTS = {
@@ -103,6 +106,10 @@ def test_the_surface_is_weighted_as_the_line_is(rollers, oil):
     rates = found["surface_breakthrough_rate"].values
     assert found["whole_surface_rate"] == pytest.approx(0.75 * rates[0] + 0.25 * rates[1])
     assert found["whole_surface_rate"].attrs["units"] == "h-1"
+    for end in ("lower", "upper"):
+        of_points = found[f"surface_breakthrough_probability_pair_{end}"].values
+        whole = found[f"whole_surface_probability_pair_{end}"].item()
+        assert whole == pytest.approx(0.75 * of_points[0] + 0.25 * of_points[1])
     assert found["whole_surface_probability"] > 0.1 and "whole_probability" not in found
 
 
@@ -218,3 +225,93 @@ def test_a_mistake_is_one_line(rollers, oil, change, message):
 def test_a_file_that_is_not_there_is_one_line(rollers, oil):
     with pytest.raises(LubeError, match=r"got 'nowhere\.csv', need a table"):
         lube.duty("nowhere.csv", rollers, oil)
+
+
+ENDS = ("lower", "upper")
+KELVIN = {"temperature": {"range": "+- 2 K", "source": "thermocouple"}}
+
+
+def assumed(found, name="assumed_breakthrough_probability"):
+    return np.stack([found[f"{name}_{end}"].values for end in ENDS])
+
+
+def test_one_pair_of_the_whole_is_that_of_a_single_point(rollers, oil):
+    one = {name: values[:1] for name, values in POINTS.items()}
+    found = lube.duty(one, rollers, oil, **RUNS)
+    for end in ENDS:
+        of_point = found[f"breakthrough_probability_pair_{end}"].item()
+        assert found[f"whole_probability_pair_{end}"].item() == pytest.approx(of_point, rel=1e-12)
+    cycle = lube.duty(POINTS, rollers, oil, **RUNS)
+    assert cycle["whole_probability_pair_lower"] < cycle["whole_probability_lower"]
+    assert cycle["whole_probability_pair_upper"] > cycle["whole_probability_upper"]
+    label = cycle["whole_probability_pair_upper"].attrs["long_name"]
+    assert label == "breakthrough probability of the whole duty cycle, of one pair"
+
+
+@pytest.mark.usefixtures("few_samples")
+def test_assumptions_at_each_point_are_as_by_itself(rollers, oil):
+    one = {name: values[:1] for name, values in POINTS.items()}
+    found = lube.duty(one, rollers, oil, **RUNS, bands=True)
+    point = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
+    alone = lube.contact_probability(rollers, oil, **point, **RUNS, bands=True)
+    np.testing.assert_array_equal(assumed(found)[:, 0], assumed(alone))
+    whole = assumed(found, "whole_assumed_probability")
+    np.testing.assert_allclose(whole, assumed(alone), rtol=1e-12)
+    assert "whole_assumed_probability_lower" not in found.table()
+    without = lube.duty(one, rollers, oil, **RUNS)
+    assert without.equals(found.drop_vars([name for name in found if "assumed" in name]))
+
+
+@pytest.mark.usefixtures("few_samples")
+def test_all_points_of_a_cycle_share_the_assumptions(rollers, oil):
+    """Compared with the cycle of each sample, written out."""
+    table = POINTS | {"speed [rpm]": [100.0, 20.0, 100.0], "share": [1.0, 1.0, 1.0]}
+    table = table | {"temperature [degC]": [50.0, 90.0, 60.0]}
+    found = lube.duty(table, rollers, oil, **RUNS, bands=KELVIN)
+    assumptions = Assumptions(KELVIN, rollers, oil, Choices(), FORMULA, RUNS["seed"])
+    cycle = np.zeros(32)
+    for force, speed, level in zip(*list(table.values())[:3], strict=True):
+        point = {"force": force, "speed": speed, "temperature": level}
+        cycle += assumptions.probabilities(point).values / 3.0
+    expected = np.quantile(cycle, [0.05, 0.95])
+    whole = assumed(found, "whole_assumed_probability")
+    # The oil is interpolated between other temperatures.
+    np.testing.assert_allclose(whole, expected, rtol=1e-5)
+
+
+@pytest.mark.usefixtures("few_samples")
+def test_assumptions_hold_for_the_radii_of_each_point(rollers, oil):
+    """The same contact of other radii; and other rollers with the same lines."""
+    given = {"force [N]": [400.0, 400.0], "temperature [degC]": [60.0, 60.0]}
+    given |= {"entrainment_speed [m/s]": [0.5, 0.5], "second_radius [mm]": [50.0, 200.0 / 3.0]}
+    found = lube.duty(given | {"radius [mm]": [50.0, 40.0]}, rollers, oil, **RUNS, bands=True)
+    limits = assumed(found)
+    np.testing.assert_allclose(limits[:, 0], limits[:, 1], rtol=1e-6)
+    small = lube.duty(given | {"radius [mm]": [50.0, 20.0]}, rollers, oil, **RUNS, bands=True)
+    assert (np.abs(np.log(assumed(small)[:, 1] / limits[:, 0])) > 0.1).all()
+
+
+@pytest.mark.usefixtures("few_samples")
+def test_assumptions_hold_for_the_slip_of_each_point(rollers, oil, monkeypatch):
+    monkeypatch.setitem(bands.SAMPLES, "line", 2)
+    speeds = {"surface_speed [m/s]": [0.5, 0.9], "second_surface_speed [m/s]": [0.5, 0.1]}
+    points = speeds | {"force [N]": [400.0, 400.0], "temperature [degC]": [60.0, 60.0]}
+    choices = {"film_shape": "computed", "roughness_deformation": "computed", "realisations": 1}
+    found = assumed(lube.duty(points, rollers, oil, **choices, bands=True))
+    point = {"force": "400 N", "speed": "0.5 m/s", "temperature": "60 degC"}
+    slipping = choices | {"slide_to_roll_ratio": 1.6, "bands": True}
+    alone = assumed(lube.contact_probability(rollers, oil, **point, **slipping))
+    np.testing.assert_allclose(found[:, 1], alone, rtol=2e-3)
+    assert np.abs(np.log(found[:, 0] / alone)).max() > 0.01
+
+
+def test_what_the_oil_does_to_the_lines_depends_on_the_radii_of_each_point(rollers, oil):
+    """The same contact of other radii."""
+    given = {"force [N]": [400.0] * 3, "temperature [degC]": [60.0] * 3}
+    given |= {"entrainment_speed [m/s]": [0.5] * 3}
+    radii = {"radius [mm]": [50.0, 40.0, 20.0], "second_radius [mm]": [50.0, 200.0 / 3.0, 50.0]}
+    choices = {"film_shape": "computed", "roughness_deformation": "computed", "realisations": 1}
+    found = lube.duty(given | radii, rollers, oil, **choices)["tail_breakthrough_probability"]
+    first, same, other = found.values
+    assert first == pytest.approx(same, rel=1e-6)
+    assert first != pytest.approx(other, rel=0.1)

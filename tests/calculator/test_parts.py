@@ -198,8 +198,8 @@ def test_both_show_themselves_and_travel_between_processes():
             "Rollers: longest_wavelenght: unknown argument, did you mean 'longest_wavelength'?",
         ),
         (
-            lambda: lube.duty([], None, None, bands=True),
-            "duty: bands: unknown argument, only contact_probability takes it",
+            lambda: lube.trace(None, None, bands=True),
+            "trace: bands: unknown argument, only contact_probability, duty and the required_",
         ),
         (lambda: Rollers(rms_roughness="1 um"), "Rollers: missing a required argument: 'radius'"),
         (lambda: Oil(OIL, temp_range=1), "Oil: temp_range: unknown argument, did you mean"),
