@@ -20,6 +20,7 @@ from lube.calculator.arguments import (
 from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import sample_size
+from lube.contact.surface_strip import SURFACES, surface_contact
 from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, right_one
 from lube.grid.discretise import speed_ratios
@@ -28,6 +29,8 @@ from lube.inference.planning import (
     QUANTITIES,
     film_by_coefficient,
     half_widths,
+    on_surfaces,
+    reading_of_surfaces,
     relative_error,
     slopes,
 )
@@ -37,7 +40,7 @@ from lube.rig.simulator import Revolution
 from lube.statistics.one_pair import scatter_ratio
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.surfaces.synthetic import draw_realisation
-from lube.types import Amount, FilmShape, RoughnessDeformation
+from lube.types import Amount, ContactModel, FilmShape, RoughnessDeformation
 
 
 @with_parts
@@ -52,6 +55,7 @@ def plan(
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
     slide_to_roll_ratio: float = 0.0,
+    contact_model: ContactModel = "line",
     turns: float | Sequence[float] = 1.0,
     rig: KnownRig | None = None,
     threshold: Amount = "100 ohm",
@@ -61,20 +65,24 @@ def plan(
     """Expect how well a record of the contact share tells film, oil and layer.
 
     Ask before you measure: at which operating points, and how long. A record comes from one pair of
-    rollers, whose share differs from the mean over pairs. Slopes and scatter are those of lines.
+    rollers, whose share differs from the mean over pairs. By default it is a record of lines; the
+    surfaces of rollers touch far more often.
 
     Parameters
     ----------
     rollers, oil, force, speed, temperature
         As in `lube.film`.
     film_formula, film_shape, roughness_deformation, slide_to_roll_ratio, realisations, seed
-        As in `lube.contact_probability`; one film formula.
+        As in `lube.contact_probability`; one film formula. Realisations are those of lines.
+    contact_model : str, optional
+        ``"line"``; or ``"surface"``, as in `lube.contact_probability`, which takes a minute.
     turns : float or sequence of float, optional
         Length of the record, revolutions of the roller with the faster surface. Longer records of
         equal rollers in pure rolling tell no more than one revolution.
     rig : str, optional
         A known rig, such as ``"mtm-ecr"``, whose error in reading the share of a revolution is
-        added. By default the share is read exactly.
+        added. By default the share is read exactly. The rig runs with lines, so its error of
+        surfaces follows from theirs.
     threshold : str, sequence of str or tuple, optional
         Resistance below which that rig shows contact. An ECR meter shows the mean voltage, which
         depends on no threshold.
@@ -103,20 +111,27 @@ def plan(
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     turns = amount("turns", (turns, "1"), "1", above=0.0)
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
-    choices = Choices.of(film_shape, roughness_deformation, "none", "line")
+    model = one_name("contact_model", contact_model)
+    models = [model] if rig is None else ["line", model]
+    choices = Choices.of(film_shape, roughness_deformation, "none", models)
     check_realisations(realisations, seed)
     formula = one_name("film_formula", film_formula)
     table = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
-    contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
-    spec, ratios = rollers.lines, speed_ratios(slip)
-    windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
-    size = sample_size(contact["breakthrough_probability"], windows).ravel()
-    found = slopes(spec, table, rollers.layer, choices.gap, seed)
     reading = _reading_error(rollers, table, choices.gap, slip, rig, thresholds.values, seed)
-    reach = spec.longest_wavelength / spec.spacing
-    records = turns.values.ravel().tolist()
-    ratio = np.array([scatter_ratio(one, ratios, spec.points, reach, 1.0, 0.0) for one in records])
-    error = relative_error(found.probability, size, ratio[:, None, None], reading)
+    records, spec, layer = turns.values.ravel().tolist(), rollers.lines, rollers.layer
+    if model == "surface":
+        contact = surface_contact(spec, rollers.pair.length, table, layer, seed, choices.gap)
+        given = spec, rollers.pair.length, table, layer, choices.gap, seed
+        found, size, ratio = on_surfaces(*given, contact, slip, records)
+        reading, realisations = reading_of_surfaces(reading, found.probability), SURFACES
+    else:
+        contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
+        ratios, reach = speed_ratios(slip), spec.longest_wavelength / spec.spacing
+        windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
+        size = sample_size(contact["breakthrough_probability"], windows).ravel()
+        found, motion = slopes(spec, table, layer, choices.gap, seed), (ratios, spec.points, reach)
+        ratio = np.array([[scatter_ratio(one, *motion, 1.0, 0.0)] for one in records])
+    error = relative_error(found.probability, size, ratio[:, None], reading)
     radius = rollers.pair.first.radius
     force, speed, temperature = conditions(force, speed, temperature, radius)
     oils, dims = oil.at(temperature), table["film_thickness"].dims

@@ -6,7 +6,7 @@ w, the *passage width*.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy
@@ -66,6 +66,14 @@ class StripFilm:
         part = likely_part(film, np.broadcast_to(rms, film.shape))[1]
         begin, end = position[max(part.start - 1, 0)], position[min(part.stop, film.size - 1)]
         return cls(scipy.interpolate.CubicSpline(position, film), begin, end - begin, False)
+
+    def thicker(self, times: float) -> "StripFilm":
+        """Make the film thicker, on the same part of the strip."""
+
+        def thickness(position, derivative=0):
+            return times * self.thickness(position, derivative)
+
+        return replace(self, thickness=thickness)
 
     def films(self, spacing: float) -> Array:
         """Film at the columns of a grid, m."""

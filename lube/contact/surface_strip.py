@@ -91,6 +91,7 @@ def surface_contact(
     fewer: int = 1,
     slide_to_roll_ratio: xr.DataArray | float = 0.0,
     wanted: xr.DataArray | None = None,
+    thicker: Values = 1.0,
 ) -> xr.Dataset:
     """Find how often, and at how many positions, surfaces touch over the length of the rollers.
 
@@ -121,6 +122,10 @@ def surface_contact(
     wanted : xarray.DataArray, optional
         At which of the films contact is sampled, by default at all. The choice does not change the
         results there.
+    thicker : float or numpy.ndarray, optional
+        How many times thicker the films are under which contact is sampled, at all or at each. The
+        surfaces, and how finely they are drawn, are those for the given films, so that contact
+        changes by the film alone; way and scatter are those under the given films too.
 
     Returns
     -------
@@ -152,7 +157,10 @@ def surface_contact(
     if known:
         some = [strips[point] for point in known]
         seeds = surface_seeds(seed, SURFACES // fewer)
-        for name, of_known in _contacts(spec, some, sharp, wanted, length, seeds, threads).items():
+        changed = np.broadcast_to(thicker, thickness.size)[known].tolist()
+        changed = [one.thicker(times) for one, times in zip(some, changed, strict=True)]
+        choices = wanted, length, seeds, threads
+        for name, of_known in _contacts(spec, some, changed, sharp, *choices).items():
             values[name][known] = of_known
     if gap.is_answered:
         values |= {name: np.full(thickness.size, np.nan) for name in _EXPECTED}
@@ -220,8 +228,8 @@ def strip_films(spec: LineSpecLike, film: xr.Dataset, gap: Gap) -> list[StripFil
     ]
 
 
-def _contacts(spec, strips, sharp, wanted, length, seeds, threads):
-    """Variables of `surface_contact` at some strips, shape (strips,) each."""
+def _contacts(spec, strips, changed, sharp, wanted, length, seeds, threads):
+    """Variables of `surface_contact` at some strips, of which changed ones are sampled."""
     moments = surface_moments(spec)
     known = zip(strips, sharp, strict=True)
     expected = np.array([strip.expected(moments, length, own) for strip, own in known]).T
@@ -229,7 +237,8 @@ def _contacts(spec, strips, sharp, wanted, length, seeds, threads):
     found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
 
     def sample(surface, finest, some, certain):
-        own, choices = [strips[point] for point in some], (length, seeds, threads)
+        own = [changed[point] for point in some]
+        choices = length, seeds, threads
         sampled = _sampled(spec, surface, finest, own, certain, sharp[some], *choices)
         for name, values in sampled.items():
             found[name][some] = values

@@ -6,27 +6,37 @@ A record measures the contact share P of one pair of rollers. With the standard 
 .. math:: \frac{\sigma_q}{q} = \frac{\sigma / P}{|\partial \ln P / \partial \ln q|}
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
+from lube.inference.surface_scatter import revolution_size, surface_scatter
 from lube.statistics.one_pair import quantile
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer, RollerPair
+from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Values
 
 PAIRS = 16
 """Pairs of lines on which slopes are sampled; all quantities have the same."""
+FEWER = 4
+"""Surfaces drawn for a probability, for each one drawn for its slopes."""
 STEP = 0.03
 """Relative change of a quantity for its slope."""
 LEAST = 4.0
-"""Expected number of independent contacts in a record, below which it tells too little."""
+"""Expected number of independent contacts in a record, or of times without contact, below which it
+tells too little."""
 QUANTITIES = "film thickness", "pressure-viscosity coefficient", "layer strength"
 """Quantities inferred from a record."""
+_THICKER = np.array([1.0 + STEP, 1.0 - STEP, 1.0, 1.0])
+_WEAKER = _THICKER[::-1]
+"""Changes of the film, and of the layer, for the slopes."""
 
 
 class Slopes(NamedTuple):
@@ -71,18 +81,73 @@ def slopes(
     Slopes
         In the order of the film's dimensions; NaN where the film is not known.
     """
-    lower, upper = 1.0 - STEP, 1.0 + STEP
-    across = np.log(upper / lower)
 
-    def sampled(thicker=1.0, weaker=1.0):
+    def sampled(thicker, weaker):
         changed = film.assign(film_thickness=film["film_thickness"] * thicker)
         windows = ContactWindows(spec, changed, layer, gap, weaker)
         return windows.on_pairs(spec, seed, PAIRS, threads)[:, 1].mean(axis=0)
 
+    changed = [sampled(*change) for change in zip(_THICKER, _WEAKER, strict=True)]
+    return _slopes(sampled(1.0, 1.0), *changed)
+
+
+def on_surfaces(
+    spec: LineSpecLike,
+    length: float,
+    film: xr.Dataset,
+    layer: BoundaryLayer,
+    gap: Gap,
+    seed: int,
+    contact: xr.Dataset,
+    slide_to_roll_ratio: float,
+    turns: Sequence[float],
+    drift: float = 0.0,
+    threads: int | None = None,
+) -> tuple[Slopes, Array, Array]:
+    """Sample the slopes of contact of surfaces, and find the scatter of records of one pair.
+
+    Parameters
+    ----------
+    spec, length, film, layer, gap, seed, threads
+        As in `lube.contact.surface_strip.surface_contact`.
+    contact : xarray.Dataset
+        Contact of the surfaces at these films, from the same function.
+    slide_to_roll_ratio : float
+        Slide-to-roll ratio of the records.
+    turns : sequence of float
+        Durations of records, in revolutions.
+    drift : float, optional
+        As in `lube.statistics.one_pair.drift_factor`.
+
+    Returns
+    -------
+    slopes : Slopes
+        As from `slopes`.
+    sample_size : numpy.ndarray, shape (P,)
+        Effective sample size of a revolution of pure rolling of equal rollers.
+    ratios : numpy.ndarray, shape (turns, P)
+        Variance of a record's share over that of such a revolution.
+    """
+    contact = contact.transpose(*film["film_thickness"].dims)
+    share = contact["breakthrough_probability"].values.ravel()
+    # All changes are sampled at once, for which surfaces are drawn once.
+    films = film["film_thickness"].expand_dims(change=len(_THICKER))
+    changed = {"thicker": np.repeat(_THICKER, share.size), "weaker": np.repeat(_WEAKER, share.size)}
+    given = spec, length, film.assign(film_thickness=films), layer, seed, gap, threads
+    found = surface_contact(*given, fewer=FEWER, **changed)
+    changed = found["breakthrough_probability"].values.reshape(len(_THICKER), -1)
+    records = np.repeat(np.array(turns)[:, None], share.size, axis=1)
+    motion = np.full(share.size, slide_to_roll_ratio), records, gap.film_shape, drift
+    ratios = surface_scatter(spec, length, film, share, *motion)
+    return _slopes(share, *changed), revolution_size(spec, contact).ravel(), ratios
+
+
+def _slopes(probability, thicker, thinner, stronger, weaker):
+    """Slopes from probabilities sampled with the same random numbers."""
+    across = np.log((1.0 + STEP) / (1.0 - STEP))
     with np.errstate(divide="ignore", invalid="ignore"):
-        by_film = np.log(sampled(thicker=upper) / sampled(thicker=lower)) / across
-        by_layer = np.log(sampled(weaker=lower) / sampled(weaker=upper)) / across
-    return Slopes(sampled(), by_film, by_layer)
+        by_film, by_layer = np.log(thicker / thinner) / across, np.log(stronger / weaker) / across
+    return Slopes(probability, by_film, by_layer)
 
 
 def film_by_coefficient(
@@ -138,7 +203,7 @@ def relative_error(
     Returns
     -------
     numpy.ndarray
-        Infinite where fewer independent contacts than `LEAST` are expected.
+        Infinite where fewer independent contacts than `LEAST` are expected, or fewer times without.
 
     Examples
     --------
@@ -148,8 +213,38 @@ def relative_error(
     with np.errstate(divide="ignore", invalid="ignore"):
         # An estimate of the probability may exceed one.
         variance = ratio * np.maximum(1.0 - probability, 0.0) / (sample_size * probability)
-        enough = sample_size / ratio * probability >= LEAST
+        enough = sample_size / ratio * np.minimum(probability, 1.0 - probability) >= LEAST
     return np.where(enough, np.sqrt(variance + np.square(reading)), np.inf)
+
+
+def reading_of_surfaces(reading: Array, probability: Array) -> Array:
+    r"""Find the relative error of a rig's reading of surfaces, from that of lines.
+
+    The rig misses the part r of the contacts, or shows them for so much longer. On a line, where
+    contact is rare, r is the error of the share. On surfaces some of these contacts overlap:
+    :math:`-\ln(1 - P)` groups of them are in the strip on average, so that
+
+    .. math:: \frac{\Delta P}{P} = -\frac{1 - P}{P} \ln(1 - P)\, r
+
+    Parameters
+    ----------
+    reading : numpy.ndarray
+        Relative error r.
+    probability : numpy.ndarray
+        Probability P of contact of surfaces.
+
+    Returns
+    -------
+    numpy.ndarray
+        Relative error of the share; no greater than `reading`.
+
+    Examples
+    --------
+    >>> reading_of_surfaces(np.array([0.1, 0.1]), np.array([1e-6, 0.9])).round(3)
+    array([0.1  , 0.026])
+    """
+    known = np.clip(probability, 1e-12, 1.0 - 1e-12)
+    return reading * -np.log1p(-known) * (1.0 - known) / known
 
 
 def half_widths(found: Slopes, by_coefficient: Array, error: Array, realisations: int) -> Array:

@@ -83,13 +83,15 @@ def surfaces_at_records(
     for records, some in parts:
         some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
         curves[..., records] = _sampled(study, some, threads, FEWER)
+    motion = (experiment[name].values for name in (_SLIP, "turns"))
+    given = study.line_spec, study.rollers.length, first, own[0], *motion
     by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
     found = {
         "film_formula": films["film_formula"].values,
         "curve_lambda_ratio": ratios,
         **values_with_limits("breakthrough_probability", by_formula[:3]),
         "sample_size": by_formula[3],
-        "scatter_ratio": surface_scatter(study, experiment, first, own[0]),
+        "scatter_ratio": surface_scatter(*given, study.film_shape, study.rig.drift),
         **values_with_limits("curve_probability", curves[:3]),
         "curve_sample_size": curves[3],
     }

@@ -16,9 +16,8 @@ from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.statistics.one_pair import prediction_limits, scatter_ratio
-from lube.study.study import Study
 from lube.surfaces.synthetic import LineSpecLike
-from lube.types import Array, Pair, Values
+from lube.types import Array, FilmShape, Pair, Values
 
 
 def revolution_size(spec: LineSpecLike, contact: xr.Dataset) -> Array:
@@ -65,47 +64,56 @@ def surface_prediction(
 
 
 def surface_scatter(
-    study: Study, experiment: xr.Dataset, films: xr.Dataset, shares: Array
+    spec: LineSpecLike,
+    length: float,
+    films: xr.Dataset,
+    shares: Array,
+    slips: Array,
+    turns: Array,
+    film_shape: FilmShape,
+    drift: float,
 ) -> Array:
     """Find how far the share of each record scatters between pairs of surfaces.
 
     Parameters
     ----------
-    study : Study
-        Its rollers, roughness, film shape and drift.
-    experiment : xarray.Dataset
-        With the slide-to-roll ratio and the number of revolutions of each record.
+    spec, length
+        As in `lube.contact.surface_strip.surface_contact`.
     films : xarray.Dataset
         Films at the records by one film formula.
     shares : numpy.ndarray, shape (record,)
         Probability of breakthrough at the records.
+    slips : numpy.ndarray, shape (record,)
+        Slide-to-roll ratios.
+    turns : numpy.ndarray, shape (..., record)
+        Revolutions of the records, of one or of several durations.
+    film_shape : str
+        As in a study.
+    drift : float
+        As in `lube.statistics.one_pair.drift_factor`.
 
     Returns
     -------
-    numpy.ndarray, shape (record,)
-        Variance of the record's share over that of one revolution of pure rolling of equal rollers;
-        NaN where the film is not known. What the oil does to the surfaces has no effect on it.
+    numpy.ndarray
+        Of the shape of `turns`: variance of the record's share over that of one revolution of pure
+        rolling of equal rollers; NaN where the film is not known. What the oil does to the surfaces
+        has no effect on it.
     """
-    spec, length = study.line_spec, study.rollers.length
     moments, recurring = surface_moments(spec), RecurringContacts(spec)
     reach, rms = spec.longest_wavelength / spec.spacing, math.sqrt(moments.height)
-    strips = strip_films(spec, films, Gap(study.film_shape))  # of surfaces as drawn
-    records = zip(
-        *(experiment[name].values.tolist() for name in ("slide_to_roll_ratio", "turns")),
-        shares,
-        strips,
-        strict=True,
-    )
+    strips = strip_films(spec, films, Gap(film_shape))  # of surfaces as drawn
+    durations = turns.reshape(-1, shares.size).T.tolist()
 
     def of_record(slip, turns, share, strip):
         if strip is None or np.isnan(share):
-            return np.nan
+            return [np.nan] * len(turns)
         thinnest = strip.films(strip.width / COLUMNS).min() / rms
         _, *common = strip.passage(moments, length)
         part, shorter = persistent_part(share, *common, recurring.at(thinnest)), 1.0
         if slip:  # contacts pass in a shorter time
             shorter /= strip.appearing(moments, surface_motion(spec, slip), length)
-        motion = speed_ratios(slip), spec.points, reach
-        return shorter * scatter_ratio(turns, *motion, min(part / shorter, 1.0), study.rig.drift)
+        motion = speed_ratios(slip), spec.points, reach, min(part / shorter, 1.0), drift
+        return [shorter * scatter_ratio(one, *motion) for one in turns]
 
-    return np.array([of_record(*record) for record in records])
+    found = map(of_record, slips.tolist(), durations, shares, strips)
+    return np.reshape(np.transpose(list(found)), turns.shape)

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.grid.operating_points import by_contact_model
 from lube.report.key_tables import markdown_table
 from lube.report.pages import percent
 from lube.schema import POINT_DIMS
@@ -29,15 +30,24 @@ def tables(found: xr.Dataset) -> str:
     Returns
     -------
     str
-        Markdown, for the first lubricant.
+        Markdown, for the first lubricant and each contact model.
     """
+    models = by_contact_model(found)
+    several, parts = models.sizes["contact_model"] > 1, []
+    for model in models["contact_model"].values:
+        parts += [f"**By contact of the {model}**"] if several else []
+        parts += _of_model(models.sel(contact_model=model))
+    if "narrowing" in found:
+        parts.append(_others(found.isel(lubricant=0).stack(point=POINT_DIMS[1:])))
+    return "\n\n".join(parts)
+
+
+def _of_model(found):
+    """Tabulate the best records of each quantity, and durations, by one contact model."""
     points = found.isel(lubricant=0).stack(point=POINT_DIMS[1:])
     once = points.sel(turns=1.0, method="nearest")
     parts = [_records(once.sel(quantity=name), name) for name in found["quantity"].values]
-    parts.append(_durations(points))
-    if "narrowing" in found:
-        parts.append(_others(points))
-    return "\n\n".join(parts)
+    return [*parts, _durations(points)]
 
 
 def _records(of_quantity, name):

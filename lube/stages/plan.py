@@ -4,12 +4,14 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.ensemble import sample_size, windows_by_force
+from lube.contact.surface_strip import SURFACES
 from lube.grid.discretise import speed_ratios
 from lube.grid.film_profiles import six_digits
+from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip
 from lube.inference import planning
-from lube.schema import POINT_DIMS, label
+from lube.schema import POINT_DIMS, label, model_dependent
 from lube.sensitivity.findings import LEFT, narrowing
 from lube.sensitivity.samples import SEED
 from lube.statistics.one_pair import scatter_ratio
@@ -32,47 +34,74 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``plan.nc``; see `lube.stages`.
 
     All values are for the first film formula and the slide-to-roll ratio nearest to pure rolling,
-    and for records of one pair of rollers with the study's rig. Probabilities, slopes and scatter
-    are those of the line.
+    and for records of one pair of rollers with the study's rig. In a study of surfaces they are
+    over contact_model. The rig runs with lines, so its error of surfaces follows from theirs.
     """
     slip = rolling(study.slips)
-    film = at_slip(inputs["film"], slip).isel(film_formula=0, drop=True).transpose(*POINT_DIMS, ...)
-    sizes = [film.sizes[name] for name in POINT_DIMS]
-    choices = study.boundary_layer, study.gap, study.seed, threads
-    found = planning.slopes(study.line_spec, film, *choices)
+    film = at_slip(with_surface_responses(inputs), slip).isel(film_formula=0, drop=True)
+    film = film.transpose(*POINT_DIMS, ...)
     threshold, reading = _reading(inputs["electrical"], study)
     point = inputs["lubricant"], study.rough_rollers, film["force"], film["speed"]
     by_coefficient = planning.film_by_coefficient(
         *point, study.film_formulas[0], slide_to_roll_ratio=slip, **study.inlet_model
     )
     by_coefficient = by_coefficient.transpose(*POINT_DIMS).values.ravel()
-    table = {
-        "breakthrough_probability": found.probability,
-        "slope_by_film": found.by_film,
-        "slope_by_layer": found.by_layer,
-        "film_by_coefficient": by_coefficient,
-        "reading_error": reading,
-    }
-    table = {name: (POINT_DIMS, _digits(each.reshape(sizes))) for name, each in table.items()}
-    size = _sample_size(inputs["contact"], inputs["film"], slip)
-    ratios = [_ratio(study, slip, turns) for turns in TURNS]
-    errors = [planning.relative_error(found.probability, size, ratio, reading) for ratio in ratios]
-    unknown = {"half_width": 0.0}
+    unknown = {"half_width": dict.fromkeys(study.contact_model, 0.0)}
     if "sensitivity" in inputs:
-        unknown["half_width_assumed"] = _assumed(inputs["sensitivity"])[:, None]
-    for name, others in unknown.items():
-        error, realisations = np.hypot(errors, others), inputs["contact"].sizes["realisation"]
-        widths = planning.half_widths(found, by_coefficient, error, realisations)
-        widths = _digits(widths.reshape(len(planning.QUANTITIES), len(TURNS), *sizes))
-        table[name] = ("quantity", "turns", *POINT_DIMS), widths
+        unknown["half_width_assumed"] = _assumed(inputs["sensitivity"], study)
     coordinates = {name: film[name].values for name in POINT_DIMS}
     coordinates |= {"quantity": list(planning.QUANTITIES), "turns": list(TURNS)}
-    dataset = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
+    sizes, tables = [film.sizes[name] for name in POINT_DIMS], []
+    for model in study.contact_model:
+        of_model = _of_lines if model == "line" else _of_surfaces
+        found, size, ratios, read, ensemble = of_model(study, inputs, film, slip, reading, threads)
+        table = {
+            "breakthrough_probability": found.probability,
+            "slope_by_film": found.by_film,
+            "slope_by_layer": found.by_layer,
+            "film_by_coefficient": by_coefficient,
+            "reading_error": read,
+        }
+        table = {name: (POINT_DIMS, _digits(each.reshape(sizes))) for name, each in table.items()}
+        errors = [planning.relative_error(found.probability, size, one, read) for one in ratios]
+        for name, others in unknown.items():
+            error = np.hypot(errors, others[model])
+            widths = planning.half_widths(found, by_coefficient, error, ensemble)
+            widths = _digits(widths.reshape(len(planning.QUANTITIES), len(TURNS), *sizes))
+            table[name] = ("quantity", "turns", *POINT_DIMS), widths
+        tables.append(xr.Dataset(table | {"best_threshold": threshold}, coordinates))
+    dataset = tables[0]
+    if study.has_surfaces:
+        names = [name for name in model_dependent("plan") if name in dataset]
+        models = xr.DataArray(list(study.contact_model), dims="contact_model", name="contact_model")
+        by_model = xr.concat([table[names] for table in tables], models, join="exact")
+        dataset = dataset.drop_vars(names).merge(by_model)
     if "sensitivity" in inputs:
         factors = inputs["sensitivity"]["factor"].values.tolist()
         if names := [name for name in factors if name not in (*CHOICES, SEED)]:
             dataset = dataset.merge(_to_measure(study, inputs["sensitivity"], names), join="exact")
     return label(dataset, "plan")
+
+
+def _of_lines(study, inputs, film, slip, reading, threads):
+    """Find slopes and sample size, variances of records, error of the reading, and realisations.
+
+    The sample size is that of a revolution, and the variances are over that of a revolution.
+    """
+    contact, choices = inputs["contact"], (study.boundary_layer, study.gap, study.seed, threads)
+    found = planning.slopes(study.line_spec, film, *choices)
+    size = _sample_size(contact, inputs["film"], slip)
+    ratios = [_ratio(study, slip, turns) for turns in TURNS]
+    return found, size, ratios, reading, contact.sizes["realisation"]
+
+
+def _of_surfaces(study, inputs, film, slip, reading, threads):
+    """As `_of_lines`, of surfaces; the sample size is that of a revolution of pure rolling."""
+    areal = inputs["areal"].sel(slide_to_roll_ratio=slip, drop=True).isel(film_formula=0, drop=True)
+    given = study.line_spec, study.rollers.length, film, study.boundary_layer, study.gap, study.seed
+    records = slip, TURNS, study.rig.drift
+    found, size, ratios = planning.on_surfaces(*given, areal, *records, threads)
+    return found, size, ratios, planning.reading_of_surfaces(reading, found.probability), SURFACES
 
 
 def _sample_size(contact, film, slip):
@@ -118,8 +147,11 @@ def _reading(electrical, study):
     return best["threshold"].item(), best.fillna(best.mean()).values.ravel()
 
 
-def _assumed(sensitivity):
-    """Return the standard deviation of ln P by all that each inference must know."""
+def _assumed(sensitivity, study):
+    """Return the standard deviation of ln P by all that each inference must know.
+
+    By contact model; NaN where the sensitivity study does not sample it.
+    """
     total = sensitivity["log_probability_deviation"].transpose(*POINT_DIMS)
     parts = sensitivity["first_order"].clip(0.0, 1.0)
     each = zip(parts["factor"].values, sensitivity["group_of_factor"].values, strict=True)
@@ -129,7 +161,9 @@ def _assumed(sensitivity):
         unknown = [name for name, group in groups.items() if not {name, group} & given]
         part = parts.sel(factor=unknown).sum("factor").clip(0.0, 1.0)
         found.append((total * np.sqrt(part)).transpose(*POINT_DIMS).values.ravel())
-    return np.array(found)
+    by_quantity, open_choices = np.array(found)[:, None], study.uncertainty.contact_model
+    sampled = open_choices.choices if open_choices else study.contact_model[:1]
+    return {one: by_quantity if one in sampled else np.nan for one in study.contact_model}
 
 
 def _to_measure(study, sensitivity, names):

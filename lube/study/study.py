@@ -193,6 +193,11 @@ class Study(StrictModel):
         return self.line_spec if self.gap.is_answered else None
 
     @property
+    def answered_surfaces(self) -> LineSpec | None:
+        """Lines that stand for surfaces, if contact of these is asked for and the oil answers."""
+        return self.line_spec if self.has_surfaces and self.gap.is_answered else None
+
+    @property
     def has_lines(self) -> bool:
         """Whether contact of lines is asked for."""
         return "line" in self.contact_model

@@ -5,6 +5,8 @@ import pytest
 
 import lube
 from lube import LubeError
+from lube.contact.surface_strip import SURFACES
+from lube.statistics.one_pair import quantile
 
 POINT = {"force": ["400 N", "1600 N"], "speed": "100 rpm", "temperature": "70 degC"}
 
@@ -58,6 +60,37 @@ def test_an_ecr_meter_shows_the_mean_voltage_whatever_the_threshold(rollers, oil
     np.testing.assert_array_equal(first, second)
 
 
+def test_surfaces_are_planned_by_the_scatter_of_one_pair(rollers, oil):
+    one = POINT | {"force": "400 N", "speed": "250 rpm", "temperature": "60 degC"}
+    surface = {"contact_model": "surface", "turns": [0.25, 1.0, 7.0]}
+    known = lube.contact_probability(rollers, oil, **one, contact_model="surface")
+    found = lube.plan(rollers, oil, **one, **surface)
+    share = known.surface_breakthrough_probability
+    assert found.breakthrough_probability == share and 0.01 < share < 0.95
+    film, coefficient, _ = found.half_width
+    np.testing.assert_allclose(film / film.sel(turns=1.0), [2.0, 1.0, 1.0])
+    np.testing.assert_allclose(film / coefficient, 0.47, rtol=0.01)
+    # By the slope between films that are 20 % apart, on other surfaces.
+    ends = []
+    for seed, speed in ((2, "220 rpm"), (3, "284 rpm")):
+        end = one | {"speed": speed, "contact_model": "surface", "seed": seed}
+        ends.append(lube.contact_probability(rollers, oil, **end))
+    each = zip(
+        *[(one.film_thickness, one.surface_breakthrough_probability) for one in ends], strict=True
+    )
+    thickness, shares = (np.log(second / first) for first, second in each)
+    expected = quantile(SURFACES) * known.surface_pair_deviation / share / abs(shares / thickness)
+    np.testing.assert_allclose(film.sel(turns=1.0), expected, rtol=0.1)
+
+
+def test_a_rig_reads_surfaces_as_well_as_lines_or_better(rollers, oil):
+    rig = {"rig": "threshold-counter", "realisations": 2}
+    line = lube.plan(rollers, oil, **POINT, **rig)
+    surface = lube.plan(rollers, oil, **POINT, **rig, contact_model="surface")
+    assert (surface.reading_error <= line.reading_error).all()
+    assert (surface.breakthrough_probability > line.breakthrough_probability).all()
+
+
 @pytest.mark.parametrize(
     ("argument", "value", "said"),
     [
@@ -69,7 +102,8 @@ def test_an_ecr_meter_shows_the_mean_voltage_whatever_the_threshold(rollers, oil
         ("turns", [1, -2], "turns: got -2, need a value above 0"),
         ("film_formula", ["paper", "moes"], "film_formula: got ['paper', 'moes'], need one name"),
         ("roughness_deformation", "venner-1997", "roughness_deformation: got venner-1997, need"),
-        ("contact_model", "surface", "plan: contact_model: unknown argument"),
+        ("contact_model", "strip", "contact_model: got 'strip', need one of line, surface"),
+        ("contact_model", ["line"], "contact_model: got ['line'], need one name"),
     ],
 )
 def test_what_does_not_suit_is_refused_in_one_line(rollers, oil, argument, value, said):

@@ -9,8 +9,11 @@ from lube.contact.pair_scatter import pair_deviation
 from lube.contact.strip_film import StripFilm, surface_moments, surface_motion
 from lube.contact.surface_strip import SURFACES as SAMPLED
 from lube.contact.surface_strip import surface_contact
+from lube.grid.gap import PLAIN
 from lube.grid.operating_points import surface_speeds
+from lube.inference.planning import half_widths, on_surfaces, relative_error
 from lube.statistics.curves import contact_curve, film_interval
+from lube.statistics.one_pair import quantile
 from lube.surfaces.rough_surface import rough_surface
 
 WIDTH, LENGTH = 3e-4, 5e-4
@@ -140,6 +143,28 @@ def test_few_pairs_ever_touch_under_thick_films(spec, surface, rollers):
         assert np.mean(found > 0.0) == pytest.approx(expected, abs=0.08)
 
 
+def test_films_read_from_single_pairs_scatter_as_planned(spec, surface, rollers, study):
+    """By the slope at the true film; each pair of whole rollers is a record a revolution long."""
+    moments, side = surface_moments(spec), surface.sides[1]
+    films = {"film_thickness": ("film", np.array([2.6, 3.0]) * np.sqrt(moments.height))}
+    films |= {"contact_half_width": 0.5 * WIDTH, "reduced_modulus": study.rollers.reduced_modulus}
+    weak = study.boundary_layer.model_copy(update={"shear_strength": 1.0})
+    given = spec, LENGTH, xr.Dataset(films), weak
+    strips = [StripFilm.flat(film, 0.5 * WIDTH) for film in films["film_thickness"][1]]
+    contact = surface_contact(*given, 3)
+    share = contact["breakthrough_probability"].values
+    each = zip(share, strips, strict=True)
+    scatter = [pair_deviation(p, *one.passage(moments, LENGTH)[1:], side) for p, one in each]
+    contact = contact.assign(pair_deviation=("film", scatter))
+    found, size, ratios = on_surfaces(*given, PLAIN, 3, contact, 0.0, [1.0])
+    error = relative_error(share, size, ratios)
+    expected = half_widths(found, np.ones(share.size), error, SAMPLED)[0, 0]
+    seen = [shares(rollers, strip.films(surface.spacing[1])) for strip in strips]
+    read = (np.stack(seen, axis=1) / share - 1.0) / found.by_film
+    seen = quantile(SAMPLED) * read.std(axis=0, ddof=1)
+    np.testing.assert_allclose(expected, seen, rtol=0.25)
+
+
 def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
     spec, surface, rollers, study
 ):
@@ -160,3 +185,13 @@ def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
             _, lower, upper = film_interval(curve, one, 1.0, SAMPLED // 2)
             held.append(lower <= np.log(ratio) <= upper)
     assert 0.92 < np.mean(held) < 0.99
+
+
+def test_a_thicker_film_is_on_the_same_strip(spec):
+    for strip in films_of(spec):
+        thicker = strip.thicker(1.1)
+        assert (thicker.begin, thicker.width) == (strip.begin, strip.width)
+        np.testing.assert_allclose(thicker.films(1e-6), 1.1 * strip.films(1e-6), rtol=1e-12)
+        rise = 0.0 - strip.breaking_curvatures(1e-6, 0.0)
+        np.testing.assert_allclose(0.0 - thicker.breaking_curvatures(1e-6, 0.0), 1.1 * rise)
+        np.testing.assert_array_equal(strip.thicker(1.0).films(1e-6), strip.films(1e-6))

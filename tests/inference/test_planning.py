@@ -4,8 +4,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from lube.contact.strip_film import StripFilm, surface_moments
+from lube.contact.surface_strip import surface_contact
 from lube.grid.gap import PLAIN
-from lube.inference.planning import Slopes, half_widths, relative_error, slopes
+from lube.inference.planning import (
+    Slopes,
+    half_widths,
+    on_surfaces,
+    reading_of_surfaces,
+    relative_error,
+    slopes,
+)
 from lube.statistics.one_pair import quantile
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.synthetic import draw_realisation
@@ -89,3 +98,125 @@ def test_films_read_from_single_pairs_scatter_as_expected(spec, film, layer, fou
     read = np.log(others / found.probability) / found.by_film
     seen = quantile(60) * read.std(axis=0, ddof=1)
     np.testing.assert_allclose(expected, seen, rtol=3.0 * quantile(60) / np.sqrt(2.0 * 60))
+
+
+# --- Surfaces ------------------------------------------------------------------------------
+
+LENGTH, TURNS = 4e-3, (0.25, 1.0, 20.0)
+
+
+@pytest.fixture(scope="module")
+def weak(layer):
+    """A layer that every contact of the coarse surface breaks."""
+    return layer.model_copy(update={"shear_strength": 1.0})
+
+
+@pytest.fixture(scope="module")
+def thick(make_spec):
+    """A coarse surface, and films under which it touches often to seldom."""
+    spec = make_spec(50_000)
+    films = np.array([3.0, 3.6, 5.0]) * np.hypot(*spec.rms_height)
+    values = {"film_thickness": ("film", films), "contact_half_width": 1.5e-4}
+    return spec, xr.Dataset(values | {"reduced_modulus": 1.154e11})
+
+
+@pytest.fixture(scope="module")
+def contact(thick, weak):
+    spec, films = thick
+    return surface_contact(spec, LENGTH, films, weak, 1)
+
+
+def of_surfaces(thick, layer, contact, slip=0.0, turns=TURNS, drift=0.0):
+    spec, films = thick
+    return on_surfaces(spec, LENGTH, films, layer, PLAIN, 1, contact, slip, turns, drift)
+
+
+@pytest.fixture(scope="module")
+def planned(thick, weak, contact):
+    return of_surfaces(thick, weak, contact)
+
+
+def test_rare_contact_of_surfaces_falls_as_the_contacts_that_theory_expects(thick, planned):
+    """Contacts are independent, so -ln(1 - P) is in proportion to their number."""
+    spec, films = thick
+    moments, logs = surface_moments(spec), []
+    for times in (1.03, 0.97):
+        strips = [StripFilm.flat(times * film, 1.5e-4) for film in films.film_thickness.values]
+        logs.append(np.log([strip.expected(moments, LENGTH, -np.inf)[0] for strip in strips]))
+    of_number = (logs[0] - logs[1]) / np.log(1.03 / 0.97)
+    found, *_ = planned
+    share = found.probability
+    expected = -np.log1p(-share) * (1.0 - share) / share * of_number
+    # Theory counts contacts that merge to one; few do under the thickest film.
+    off = np.abs(found.by_film / expected - 1.0)
+    assert np.all(off < [0.25, 0.15, 0.06]), off
+
+
+def test_slopes_of_surfaces_are_those_between_independent_samples(thick, weak, planned):
+    spec, films = thick
+    ends = []
+    for number, times in enumerate((0.9, 1.1)):
+        end = films.assign(film_thickness=films.film_thickness * times)
+        found = surface_contact(spec, LENGTH, end, weak, 20 + number)
+        ends.append(found["breakthrough_probability"].values)
+    expected = np.log(ends[1] / ends[0]) / np.log(1.1 / 0.9)
+    np.testing.assert_allclose(planned[0].by_film, expected, rtol=0.08)
+
+
+def test_a_layer_that_every_contact_breaks_does_not_matter(contact, planned):
+    np.testing.assert_array_equal(planned[0].probability, contact["breakthrough_probability"])
+    np.testing.assert_array_equal(planned[0].by_layer, 0.0)
+
+
+def test_slopes_by_a_layer_that_some_contacts_hold_are_those_between_independent_samples(
+    thick, layer, contact
+):
+    spec, films = thick
+    ends = []
+    for number, times in enumerate((0.9, 1.0, 1.1)):
+        strength = layer.model_copy(update={"shear_strength": times * 3e5})
+        ends.append(surface_contact(spec, LENGTH, films, strength, 20 + number))
+    lower, _, upper = (end["breakthrough_probability"].values for end in ends)
+    strength = layer.model_copy(update={"shear_strength": 3e5})
+    found = of_surfaces(thick, strength, ends[1])[0]
+    expected = np.log(upper / lower) / np.log(1.1 / 0.9)
+    np.testing.assert_allclose(found.by_layer, expected, rtol=0.2)
+    assert np.all(found.by_layer < -0.05)
+
+
+def test_the_scatter_of_surfaces_is_that_of_one_pair(thick, weak, contact, planned):
+    _, size, ratios = planned
+    share = contact["breakthrough_probability"].values
+    np.testing.assert_allclose(share * (1 - share) / size, contact["pair_deviation"] ** 2)
+    np.testing.assert_allclose(ratios, np.outer([4.0, 1.0, 1.0], np.ones(3)))
+    new = of_surfaces(thick, weak, contact, drift=1.0)[2]  # each revolution is another pair
+    np.testing.assert_allclose(new, np.outer([4.0, 1.0, 0.05], np.ones(3)))
+    sliding = of_surfaces(thick, weak, contact, slip=0.37, turns=[100.0])[2]
+    assert np.all(sliding < 0.8)
+
+
+def test_a_film_that_is_not_known_tells_nothing(thick, weak, contact):
+    spec, films = thick
+    gone = [True, False, True]
+    unknown = films.where(xr.DataArray(gone, dims="film")).assign(reduced_modulus=1.154e11)
+    unknown = unknown.assign(contact_half_width=1.5e-4)
+    here = contact.where(xr.DataArray(gone, dims="film"))
+    found, size, ratios = of_surfaces((spec, unknown), weak, here)
+    error = relative_error(found.probability, size, ratios)
+    widths = half_widths(found, np.ones(3), error, 16)
+    assert np.isnan(widths[:, :, 1]).all() and np.isfinite(widths[0, :, [0, 2]]).any()
+
+
+def test_a_rig_that_misses_contacts_reads_surfaces_as_it_would_fewer_of_them():
+    missed, groups = 1e-6, np.array([1e-4, 0.5, 3.0])
+    share, read = -np.expm1(-groups), -np.expm1(-groups * (1.0 - missed))
+    found = reading_of_surfaces(missed * np.ones(3), share)
+    np.testing.assert_allclose(found, 1.0 - read / share, rtol=1e-3)
+    assert reading_of_surfaces(np.array([0.1]), np.array([1.0])) < 1e-9
+    assert reading_of_surfaces(np.array([0.1]), np.array([0.0])) == pytest.approx(0.1)
+
+
+def test_contact_all_the_time_tells_as_little_as_none():
+    shares = np.array([0.03, 0.05, 0.95, 0.97])
+    found = np.isfinite(relative_error(shares, np.full(4, 100.0), 1.0))
+    assert found.tolist() == [False, True, True, False]

@@ -14,7 +14,13 @@ def scatter(study, **records):
     """Scatter ratios of three records of the busy study."""
     experiment = experiment_of(SHARES, np.array([400.0, 1600.0, 1600.0]), 100.0, 60.0, **records)
     films = study_films_at_records(study, experiment).isel(film_formula=0)
-    return surface_scatter(study, experiment, films, SHARES)
+    return of_records(study, experiment, films, SHARES)
+
+
+def of_records(study, experiment, films, shares):
+    motion = (experiment[name].values for name in ("slide_to_roll_ratio", "turns"))
+    given = study.line_spec, study.rollers.length, films, shares, *motion
+    return surface_scatter(*given, study.film_shape, study.rig.drift)
 
 
 def with_rollers(study, **second):
@@ -56,7 +62,7 @@ def test_a_film_that_is_not_known_has_no_scatter(busy_study):
     films = study_films_at_records(busy_study, experiment).isel(film_formula=0)
     films["film_thickness"][1] = np.nan
     shares = np.where([True, False, True], SHARES, np.nan)
-    found = surface_scatter(busy_study, experiment, films, shares)
+    found = of_records(busy_study, experiment, films, shares)
     assert np.isnan(found).tolist() == [False, True, False]
 
 

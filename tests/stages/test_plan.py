@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from made import made
+from made import made, on_few_surfaces
 from studies import CONFIG
 
 from lube.report.plan import tables
@@ -135,3 +135,71 @@ def test_a_meter_of_the_mean_voltage_has_no_threshold(study, files):
     expected = off.fillna(off.mean()).transpose(*found["reading_error"].dims)
     np.testing.assert_allclose(found["reading_error"], expected, rtol=1e-5)
     assert "Read the share from the mean voltage" in tables(found)
+
+
+# --- Surfaces ------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def both_study(study):
+    uncertain = study.uncertainty.model_copy(update={"contact_model": None})
+    return study.model_copy(update={"contact_model": ("line", "surface"), "uncertainty": uncertain})
+
+
+@pytest.fixture(scope="module")
+def both_files(both_study, files, sensitivity):
+    with on_few_surfaces():
+        areal = made(both_study, ("lubricant", "film", "areal"))["areal"]
+    return files | {"areal": areal, "sensitivity": sensitivity}
+
+
+@pytest.fixture(scope="module")
+def both(both_study, both_files):
+    with on_few_surfaces():
+        return plan.make(both_study, both_files, 2)
+
+
+def test_a_study_of_both_has_the_plan_of_lines_as_it_was(found, both):
+    assert both["contact_model"].values.tolist() == ["line", "surface"]
+    xr.testing.assert_identical(both.sel(contact_model="line", drop=True), found[list(both)])
+
+
+def test_surfaces_are_planned_by_their_own_probability_and_scatter(both, both_files):
+    areal = both_files["areal"].sel(slide_to_roll_ratio=0.0).isel(film_formula=0)
+    areal = areal.transpose(*POINT_DIMS)
+    surface = both.sel(contact_model="surface")
+    share = surface["breakthrough_probability"]
+    np.testing.assert_allclose(share, areal["breakthrough_probability"], rtol=1e-5)
+    relative = areal["pair_deviation"] / areal["breakthrough_probability"]
+    error = np.hypot(relative, surface["reading_error"])
+    expected = quantile(plan.SURFACES) * error / np.abs(surface["slope_by_film"])
+    width = surface["half_width"].sel(quantity="film thickness", turns=1.0)
+    known = width.notnull().values
+    assert known.any()
+    np.testing.assert_allclose(width.values[known], expected.values[known], rtol=1e-4)
+    assert (surface["reading_error"] <= both["reading_error"].sel(contact_model="line")).all()
+
+
+def test_the_band_of_the_assumptions_is_of_the_models_that_are_sampled(
+    both, both_study, both_files
+):
+    assumed = both["half_width_assumed"]
+    assert assumed.sel(contact_model="line").notnull().any()
+    assert assumed.sel(contact_model="surface").isnull().all()
+
+
+def test_surfaces_alone_have_a_plan_without_that_of_lines(both, both_study, both_files):
+    alone = both_study.model_copy(update={"contact_model": ("surface",)})
+    with on_few_surfaces():
+        found = plan.make(alone, both_files, 2)
+    for name in ("half_width", "slope_by_film", "breakthrough_probability"):
+        np.testing.assert_array_equal(found[name], both[name].sel(contact_model=["surface"]))
+    assert found["half_width_assumed"].notnull().any()
+
+
+def test_tables_are_made_for_either_model(found, both):
+    text = tables(both)
+    line, surface = text.index("**By contact of the line**"), text.index("of the surface**")
+    assert line < text.index("**Film thickness**") < surface
+    assert text.count("**Film thickness**") == 2
+    assert "**By contact" not in tables(found)

@@ -141,6 +141,7 @@ MECHANICS |= {"sensitivity_runs"}
 # Those that are for pure rolling too.
 LAYER = MECHANICS | {"master", "height_distribution", "variants", "passage", "verification"}
 LAYER |= {"plan"}
+BY_MODEL = {"tail", "film", "comparison", "sensitivity_runs", "plan"}
 DEFORMED = {"variants", "height_distribution"}
 LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface", "film_response", "surface_response"}
@@ -169,7 +170,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("roughness_deformation", "computed", MECHANICS | DEFORMED | {"film"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
-        ("contact_model", ["line", "surface"], {"tail", "film", "comparison", "sensitivity_runs"}),
+        ("contact_model", ["line", "surface"], BY_MODEL),
         ("uncertainty.force.range", "+- 3 %", {"sensitivity_runs"}),
         ("load_sharing", "iterated", {"film"}),
         ("traces.1.temperature", "60 degC", {"trace", "surface_trace", "rig"}),
