@@ -180,9 +180,10 @@ def curve_at(master: xr.Dataset, width: float, layer: xr.DataArray | None = None
 def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None) -> RecordCurves:
     """Curves over the films at the conditions of the records, made thinner and thicker.
 
-    The shape of the film, and how much the oil flattens the lines, stay those of the record. The
-    curve is shifted towards the mean over the study's realisations at the record's film, by more
-    the better the realisations determine it.
+    The shape of the film, and how much the oil flattens the lines, stay those of the record. Where
+    contact is counted, on some of the study's realisations, the curve is shifted to the mean over
+    all of them at the record's film; where it is sampled, towards this mean, by more the better the
+    realisations determine it.
 
     Parameters
     ----------
@@ -206,7 +207,7 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
     films = np.geomspace(*ends, FILMS)
     (pairs,) = _on_pairs(study, records, films, [1.0], PAIRS, threads)
     curves = [
-        _own_curve(films, pairs[..., number], records.isel(record=number))
+        _own_curve(films, pairs[..., number], records.isel(record=number), study.is_sampled)
         for number in range(records.sizes["record"])
     ]
     strengths, of_layers, few = [], [], films[:: (FILMS - 1) // (LAYER_FILMS - 1)]
@@ -251,22 +252,22 @@ def _on_pairs(study, records, films, weaker, pairs, threads):
     return np.moveaxis(np.reshape(found, (-1, *shape)), 1, 0)
 
 
-def _own_curve(films, pairs, record):
-    """Curve of one record, shifted towards the mean over the realisations."""
+def _own_curve(films, pairs, record, is_sampled):
+    """Curve of one record, shifted to the mean over the realisations, or towards it."""
     realised, size = realised_shares(record)
     curve = _through(films, pairs.mean(axis=0), size)
     if len(pairs) == 1:  # the study has no other realisation
         return curve
     own = np.log(record["lambda_ratio"].item())
     here = curve.logit_at(own)
-    mean = expit(here)
-    nearest = np.argmin(np.abs(np.log(films) - own))
     with np.errstate(divide="ignore", invalid="ignore"):
-        # Variances of a logit are those of the probability over (p (1 - p))^2.
-        of_pairs = pairs[:, nearest].var(ddof=1) / len(pairs) / (mean * (1.0 - mean)) ** 2
-        of_realisations = 1.0 / (size * realised.size * mean * (1.0 - mean))
         shift = logit(realised.mean()) - here
-        shift *= of_pairs / (of_pairs + of_realisations)
+        if is_sampled and realised.mean() < FREQUENT:
+            # Variances of a logit are those of the probability over (p (1 - p))^2.
+            mean, nearest = expit(here), np.argmin(np.abs(np.log(films) - own))
+            of_pairs = pairs[:, nearest].var(ddof=1) / len(pairs) / (mean * (1.0 - mean)) ** 2
+            of_realisations = 1.0 / (size * realised.size * mean * (1.0 - mean))
+            shift *= of_pairs / (of_pairs + of_realisations)
     if not np.isfinite(shift):
         return curve
     return dataclasses.replace(curve, logits=curve.logits + shift)
