@@ -23,6 +23,7 @@ from lube.contact.windows import ContactWindows, study_windows
 from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.gap import Gap
 from lube.statistics.confidence import mean_over_first
+from lube.statistics.line_effects import line_effects
 from lube.statistics.one_pair import persistent_share, scatter_ratio
 from lube.study.study import Study
 from lube.types import Array
@@ -84,7 +85,7 @@ def record_scatter(
     slips = np.tile(experiment["slide_to_roll_ratio"].values, formulas)
     turns = np.tile(experiment["turns"].values, formulas)
     variance = _variance(probability)
-    persistent, line_effects = _line_effects(model, study, slips, turns, len(probability))
+    persistent, of_lines = _line_effects(model, study, slips, turns, len(probability))
     ratio, deviation = 1.0 / turns, probability - probability.mean(axis=0)
     for slip in np.unique(slips):
         here = np.flatnonzero((slips == slip) & (turns >= 1.0))
@@ -93,15 +94,15 @@ def record_scatter(
         part = np.minimum(persistent[here] / by_slip, 1.0)
         alone, together = _components(study, slip, turns[here], part)
         ratio[here] = by_slip * (alone + together)
-        if line_effects is not None:
-            shares = combined_deviations(alone, together, line_effects[:, here], shares)
+        if of_lines is not None:
+            shares = combined_deviations(alone, together, of_lines[:, here], shares)
         deviation[: len(shares), here] = shares - shares.mean(axis=0)
         deviation[len(shares) :, here] = np.nan
     short = (turns < 1.0) & (variance > 0.0)
     scatter = _short_variance(study, windows[short], slips[short], turns[short], len(probability))
     ratio[short] = np.where(scatter > 0.0, scatter / variance[short], ratio[short])
     mean, error = mean_over_first(probability), np.ones(turns.size)
-    if line_effects is not None and len(probability) <= MOST_PAIRS:
+    if of_lines is not None and len(probability) <= MOST_PAIRS:
         mean, error = _pooled(study, windows, len(probability), mean, persistent)
     return {
         "scatter_ratio": ratio,
@@ -158,7 +159,7 @@ def _components(study, slip, turns, persistent):
     return alone, together
 
 
-def combined_deviations(alone: Array, together: Array, line_effects: Array, shares: Array) -> Array:
+def combined_deviations(alone: Array, together: Array, of_lines: Array, shares: Array) -> Array:
     """Deviations of each realisation in records of several alignments, shape (R, P).
 
     The effect of each line alone is more alike at neighbouring films than the effect of both
@@ -169,7 +170,7 @@ def combined_deviations(alone: Array, together: Array, line_effects: Array, shar
     ----------
     alone, together : numpy.ndarray
         Variance due to each line alone, and due to both together, shape (P,).
-    line_effects : numpy.ndarray
+    of_lines : numpy.ndarray
         Effect of the lines alone, shape (R, P).
     shares : numpy.ndarray
         Shares in one revolution, which have both effects, shape (R, P) or more realisations.
@@ -179,7 +180,7 @@ def combined_deviations(alone: Array, together: Array, line_effects: Array, shar
     numpy.ndarray
         Shape (R, P).
     """
-    effects, shares = _standardised(line_effects), _standardised(shares[: len(line_effects)])
+    effects, shares = _standardised(of_lines), _standardised(shares[: len(of_lines)])
     rest = _standardised(shares - effects * np.mean(effects * shares, axis=0))
     return np.sqrt(alone) * effects + np.sqrt(together) * rest
 
@@ -217,8 +218,8 @@ def _line_effects(model, study, slips, turns, realisations):
     known = np.isfinite(persistent)
     if not known.any():
         return np.ones(ratio.size), None
-    effects = _standardised(in_first.mean(axis=1) + in_second.mean(axis=0))
-    rows = [np.interp(ratio, levels[known], row[known]) for row in (*effects, persistent)]
+    effects = line_effects(in_first[..., known], in_second[..., known])
+    rows = [np.interp(ratio, levels[known], row) for row in (*effects, persistent[known])]
     return rows[-1], np.array(rows[:-1])
 
 

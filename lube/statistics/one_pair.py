@@ -336,6 +336,21 @@ def persistent_share(in_first: Array, in_second: Array) -> Array:
 def _together(shares):
     """Variance due to the interaction of two crossed factors, shape (P,)."""
     firsts, seconds = shares.shape[:2]
+    return np.sum(joint_effects(shares) ** 2, axis=(0, 1)) / ((firsts - 1) * (seconds - 1))
+
+
+def joint_effects(shares: Array) -> Array:
+    """Effects of pairs of lines beyond those of each line alone.
+
+    Parameters
+    ----------
+    shares : numpy.ndarray
+        Shape (R, K, P), of first lines with second lines at some points.
+
+    Returns
+    -------
+    numpy.ndarray
+        Same shape; zero on average over the first lines, and over the second.
+    """
     first, second = (shares.mean(axis=axis, keepdims=True) for axis in (1, 0))
-    rest = shares - first - second + shares.mean(axis=(0, 1))
-    return np.sum(rest**2, axis=(0, 1)) / ((firsts - 1) * (seconds - 1))
+    return shares - first - second + shares.mean(axis=(0, 1))

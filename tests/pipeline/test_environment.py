@@ -17,6 +17,8 @@ FITS = {"abel.py", "surface_statistics.py", "topography.py"}
 # They solve for the film and its response, of which six digits are kept.
 FITS |= {"line_contact.py", "reynolds.py", "response.py", "transient.py", "waves.py"}
 FITS |= {"answered_windows.py", "surface_answers.py"}
+# They free effects of lines from those of pairs, and keep six decimals.
+FITS |= {"line_effects.py"}
 # It adds up waves for a passage, of whose gaps four digits are kept.
 FITS |= {"rough_piece.py"}
 
