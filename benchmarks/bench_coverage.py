@@ -364,7 +364,8 @@ def records_on_file(study, table, film, folder):
     film = film.isel(film_formula=0)
     rows = [{name: [level] for name, level in levels.items()} for levels in levels_of(table)]
     points = [operating_points(film.sel(row), 0.0) for row in rows]
-    points = xr.concat(points, "operating_point", data_vars="minimal", compat="override")
+    alike = {"data_vars": "minimal", "coords": "minimal", "compat": "override"}
+    points = xr.concat(points, "operating_point", **alike)
     rows = ["file,temperature [degC],speed [rpm],force [N],pair,origin"]
     parts = defaultdict(list)
     for pair, number, part in simulated_revolutions(study, points):

@@ -83,5 +83,7 @@ def split_cells(line: str, delimiter: str) -> list[str]:
     >>> split_cells('40, "n-dodecane"', ",")
     ['40', 'n-dodecane']
     """
-    cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+    # A carriage return inside a line would end it.
+    inside = line.rstrip("\r\n").replace("\r", " ")
+    cells = next(csv.reader([inside], delimiter=delimiter, skipinitialspace=True), [])
     return [cell.strip() for cell in cells]
