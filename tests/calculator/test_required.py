@@ -431,6 +431,7 @@ def test_limits_beyond_the_films_tried_are_infinite_or_zero(rollers, oil):
         lube.required_film(rollers, "400 N", bands=much)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few_samples")
 def test_bands_of_a_roughness_under_a_film_with_a_shape(rollers, oil):
     """Rollers of another roughness have this band of the probability."""

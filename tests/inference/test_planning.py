@@ -168,6 +168,7 @@ def test_a_layer_that_every_contact_breaks_does_not_matter(contact, planned):
     np.testing.assert_array_equal(planned[0].by_layer, 0.0)
 
 
+@pytest.mark.slow
 def test_slopes_by_a_layer_that_some_contacts_hold_are_those_between_independent_samples(
     thick, layer, contact
 ):
