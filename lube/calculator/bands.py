@@ -81,6 +81,9 @@ class Assumptions:
         self.wanted = bands is not False
         ranges = RANGES if bands is True else dict(bands or {})
         uncertain = validate(Uncertainty, ranges, "bands", StudyError)
+        if uncertain.resistivity:
+            came = "resistivity: got a range, on which no probability depends"
+            raise StudyError(f"bands: {came}, need none")
         for factor in uncertain.factors():
             if factor.name in left_out or factor.group in left_out:
                 uncertain = uncertain.model_copy(update={factor.name: None})

@@ -91,8 +91,8 @@ def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None)
         rows.append((spoken(name), taken[name], given, escaped(source), *changes))
     if study.resistivity_range:  # no factor of the probability
         given = study.uncertainty.resistivity
-        told = taken["resistivity"], given.in_words, escaped(given.source)
-        rows.append(("resistivity", *told, *["–"] * shown.sizes["point"]))
+        cells = "resistivity", taken["resistivity"], given.in_words, escaped(given.source)
+        rows.append((*cells, *["–"] * shown.sizes["point"]))
     ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
     band = (f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True))
     rows.append(("probability, 5 to 95 % of the samples", "", "", "", *band))

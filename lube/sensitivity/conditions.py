@@ -28,7 +28,7 @@ OIL = (
     "thermal_conductivity"
 ).split()
 GIVEN = "film_thickness", "roughness_factor"
-"""Of operating points: what is given there and not found from the oil."""
+"""What operating points may state themselves, in place of a film found from the oil."""
 GAUSSIAN = {"skewness": 0.0, "kurtosis": 3.0}
 """Moments of Gaussian heights."""
 NODES = 500

@@ -86,7 +86,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 def _of_lines(study, inputs, film, slip, reading, threads):
     """Find slopes and sample size, variances of records, error of the reading, and realisations.
 
-    The sample size is that of a revolution, and the variances are over that of a revolution.
+    The sample size is for one revolution, and the variances are divided by that of one revolution.
     """
     contact, choices = inputs["contact"], (study.boundary_layer, study.gap, study.seed, threads)
     found = planning.slopes(study.line_spec, film, *choices)

@@ -98,6 +98,10 @@ def test_choices_of_the_model_belong_to_the_band(rollers, oil):
             "bands: force.range: got '2 % to 1 %', need the lower end first",
         ),
         ({"colour": {}}, "bands: colour: unknown key"),
+        (
+            {"resistivity": {"range": "+- 9 %", "source": "x"}, "speed": None},
+            "bands: resistivity: got a range, on which no probability depends, need none",
+        ),
     ],
 )
 def test_bad_ranges_are_refused_in_one_line(rollers, oil, given, said):
