@@ -8,12 +8,12 @@ import xarray as xr
 
 from lube.calculator.arguments import Choices
 from lube.calculator.parts import Oil, Rollers
-from lube.errors import StudyError, shown
+from lube.errors import StudyError, located, shown
 from lube.schema import LIMITS, POINT_DIMS
 from lube.study.field_types import validate
 from lube.study.operating_grid import OperatingGrid
 from lube.study.study import Study
-from lube.study.uncertainty import Uncertainty
+from lube.study.uncertainty import Uncertainty, check_uncertainty
 from lube.types import Array, Values
 
 SAMPLES = {"line": 128, "surface": 32}
@@ -109,6 +109,23 @@ class Assumptions:
         grid = {name: tuple(np.unique(levels[name]).tolist()) for name in POINT_DIMS[1:]}
         grid = OperatingGrid.model_construct(**grid, slide_to_roll_ratio=(0.0,))
         return self._study.model_copy(update={"operating_grid": grid})
+
+    def check(self, points: Mapping[str, Values]) -> None:
+        """Refuse ranges for which the model has no answer at some operating points.
+
+        Parameters
+        ----------
+        points : mapping
+            As in `probabilities`.
+
+        Raises
+        ------
+        LubeError
+            As from `lube.study.uncertainty.check_uncertainty`.
+        """
+        if self.wanted:
+            with located("bands"):
+                check_uncertainty(self.study(points))
 
     def probabilities(self, points: Mapping[str, Values]) -> xr.DataArray:
         """Find the probability of breakthrough of all samples at some operating points.

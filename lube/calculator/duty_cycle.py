@@ -138,6 +138,7 @@ def duty(
     check_realisations(realisations, seed)
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
     assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)
+    assumed.check(given)
     table = _film(given, rollers, oil, formula, film_model(rollers, choices, slip))
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
     if "line" in choices.models:

@@ -279,8 +279,10 @@ def contact_probability(
     choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
     gap = choices.gap
     check_realisations(realisations, seed)
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     assumed = Assumptions(bands, rollers, oil, choices, np.ravel(film_formula)[0], seed)
+    point = conditions(force, speed, temperature, rollers.pair.first.radius)
+    assumed.check(dict(zip(("force", "speed", "temperature"), point, strict=True)))
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     found = table[FILM_VARIABLES]
     if "line" in choices.models:
         contact = ensemble(table, rollers, realisations, seed, slip, gap)

@@ -27,6 +27,8 @@ PAIRS = 16
 """Pairs of lines on which slopes are sampled; all quantities have the same."""
 FEWER = 4
 """Surfaces drawn for a probability, for each one drawn for its slopes."""
+HOLDS = 1e-3
+"""Part of the time in contact for which the layer must hold for its strength to be sampled."""
 STEP = 0.03
 """Relative change of a quantity for its slope."""
 LEAST = 4.0
@@ -88,7 +90,7 @@ def slopes(
         return windows.on_pairs(spec, seed, PAIRS, threads)[:, 1].mean(axis=0)
 
     changed = [sampled(*change) for change in zip(_THICKER, _WEAKER, strict=True)]
-    return _slopes(sampled(1.0, 1.0), *changed)
+    return Slopes(sampled(1.0, 1.0), *_slopes(*changed))
 
 
 def on_surfaces(
@@ -104,7 +106,15 @@ def on_surfaces(
     drift: float = 0.0,
     threads: int | None = None,
 ) -> tuple[Slopes, Array, Array]:
-    """Sample the slopes of contact of surfaces, and find the scatter of records of one pair.
+    r"""Sample the slopes of contact of surfaces, and find the scatter of records of one pair.
+
+    Sampled are slopes of the number :math:`n = -\ln(1 - P)` of groups of contacts in the strip.
+    Where contact is all but certain, they scatter far less than those of the probability:
+
+    .. math::
+
+        \frac{\partial \ln P}{\partial \ln q}
+        = \frac{1 - P}{P}\, n\, \frac{\partial \ln n}{\partial \ln q}
 
     Parameters
     ----------
@@ -122,7 +132,8 @@ def on_surfaces(
     Returns
     -------
     slopes : Slopes
-        As from `slopes`.
+        As from `slopes`, but NaN where no record tells anything. Slopes by the layer are zero where
+        hardly any contact holds it.
     sample_size : numpy.ndarray, shape (P,)
         Effective sample size of a revolution of pure rolling of equal rollers.
     ratios : numpy.ndarray, shape (turns, P)
@@ -130,24 +141,32 @@ def on_surfaces(
     """
     contact = contact.transpose(*film["film_thickness"].dims)
     share = contact["breakthrough_probability"].values.ravel()
-    # All changes are sampled at once, for which surfaces are drawn once.
-    films = film["film_thickness"].expand_dims(change=len(_THICKER))
-    changed = {"thicker": np.repeat(_THICKER, share.size), "weaker": np.repeat(_WEAKER, share.size)}
-    given = spec, length, film.assign(film_thickness=films), layer, seed, gap, threads
-    found = surface_contact(*given, fewer=FEWER, **changed)
-    changed = found["breakthrough_probability"].values.reshape(len(_THICKER), -1)
+    size = revolution_size(spec, contact).ravel()
     records = np.repeat(np.array(turns)[:, None], share.size, axis=1)
     motion = np.full(share.size, slide_to_roll_ratio), records, gap.film_shape, drift
     ratios = surface_scatter(spec, length, film, share, *motion)
-    return _slopes(share, *changed), revolution_size(spec, contact).ravel(), ratios
+    tells = np.any([np.isfinite(relative_error(share, size, one)) for one in ratios], axis=0)
+    touch = contact["geometric_contact_probability"].values.ravel()
+    holds = tells & (share < (1.0 - HOLDS) * touch)
+    # All changes are sampled at once, for which surfaces are drawn once.
+    films = film["film_thickness"].expand_dims(change=len(_THICKER))
+    wanted = films.copy(data=np.reshape([tells, tells, holds, holds], films.shape))
+    changed = {"thicker": np.repeat(_THICKER, share.size), "weaker": np.repeat(_WEAKER, share.size)}
+    given = spec, length, film.assign(film_thickness=films), layer, seed, gap, threads
+    found = surface_contact(*given, fewer=FEWER, wanted=wanted, **changed)
+    changed = found["breakthrough_probability"].values.reshape(len(_THICKER), -1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        groups, own = -np.log1p(-changed), -np.log1p(-share) * (1.0 - share) / share
+    by_film, by_layer = (own * each for each in _slopes(*groups))
+    by_layer = np.where(tells == holds, by_layer, 0.0)
+    return Slopes(share, by_film, by_layer), size, ratios
 
 
-def _slopes(probability, thicker, thinner, stronger, weaker):
-    """Slopes from probabilities sampled with the same random numbers."""
+def _slopes(thicker, thinner, stronger, weaker):
+    """Slopes by film and by layer, from values sampled with the same random numbers."""
     across = np.log((1.0 + STEP) / (1.0 - STEP))
     with np.errstate(divide="ignore", invalid="ignore"):
-        by_film, by_layer = np.log(thicker / thinner) / across, np.log(stronger / weaker) / across
-    return Slopes(probability, by_film, by_layer)
+        return np.log(thicker / thinner) / across, np.log(stronger / weaker) / across
 
 
 def film_by_coefficient(

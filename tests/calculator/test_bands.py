@@ -110,6 +110,21 @@ def test_bad_ranges_are_refused_in_one_line(rollers, oil, given, said):
     assert str(caught.value).startswith(said) and "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("verb", ["contact_probability", "duty"])
+def test_ranges_without_an_answer_are_refused_before_any_film(rollers, oil, monkeypatch, verb):
+    def film_of_oil(*_, **__):
+        raise AssertionError("a film was found")
+
+    monkeypatch.setattr("lube.calculator.operating_points.film_of_oil", film_of_oil)
+    monkeypatch.setattr("lube.calculator.duty_cycle.film_of_oil", film_of_oil)
+    point = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
+    given = {"points": [point]} if verb == "duty" else point
+    with pytest.raises(LubeError, match="bands: load_sharing: got iterated, need none"):
+        getattr(lube, verb)(
+            rollers=rollers, oil=oil, **given, load_sharing="iterated", bands=KELVIN
+        )
+
+
 def test_lines_that_a_formula_flattens_have_no_band(rollers, oil):
     with pytest.raises(LubeError, match="roughness_deformation: got venner-1997, need"):
         lube.contact_probability(
