@@ -12,7 +12,6 @@ from compliance_checker.runner import CheckSuite, ComplianceChecker
 from lube.schema import FILES
 from lube.storage.provenance import global_attributes
 
-
 # What the compliance checker reads anew in each of its checks: most of its time.
 READ = (
     "StandardNameTable",
