@@ -9,7 +9,6 @@ from lube import LubeError, Rollers
 from lube.calculator import bands
 from lube.calculator.arguments import FORMULA, Choices
 from lube.calculator.bands import Assumptions
-from lube.sensitivity import runs
 
 RUNS = {"realisations": 8, "seed": 2}
 POINTS = {
@@ -296,7 +295,6 @@ def test_assumptions_hold_for_the_radii_of_each_point(rollers, oil):
 @pytest.mark.usefixtures("few_samples")
 def test_assumptions_hold_for_the_slip_of_each_point(rollers, oil, monkeypatch):
     monkeypatch.setitem(bands.SAMPLES, "line", 2)
-    monkeypatch.setattr(runs, "PAIRS", 1)  # the same for both
     speeds = {"surface_speed [m/s]": [0.5, 0.9], "second_surface_speed [m/s]": [0.5, 0.1]}
     points = speeds | {"force [N]": [400.0, 400.0], "temperature [degC]": [60.0, 60.0]}
     choices = {"film_shape": "computed", "roughness_deformation": "computed", "realisations": 1}
