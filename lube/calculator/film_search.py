@@ -185,8 +185,8 @@ class FilmSearch:
                 ratios = ratios[ratios < 2.0 * found * NEAR[-1]]
         table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
-        method = self._counted if is_seen else self._sampled
-        return table, method(self._windows(table, own, self._gap))
+        windows = self._windows(table, own, self._gap)
+        return table, self._counted(windows) if is_seen else self._sampled(windows, PAIRS)
 
     def _at_surfaces(self, half_width, table_at, ends, own):
         """Films near the one sought, and the probability on surfaces there, with its limits."""
@@ -222,7 +222,7 @@ class FilmSearch:
         layer, weaker = self._rollers.layer, self._weaker(table, own)
         return ContactWindows(self._rollers.lines, table, layer, gap, weaker)
 
-    def _sampled(self, windows, pairs=PAIRS):
+    def _sampled(self, windows, pairs):
         """Mean and limits of the breakthrough probability, by importance sampling."""
         found = windows.on_pairs(self._rollers.lines, self._seed, pairs)
         return mean_interval(found[:, 1], 1.0)

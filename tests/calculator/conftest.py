@@ -6,7 +6,8 @@ import pytest
 from studies import OIL
 
 from lube import Oil, Rollers
-from lube.calculator import bands
+from lube.calculator import bands, film_search
+from lube.stages import tail
 
 
 @pytest.fixture(scope="session")
@@ -33,3 +34,10 @@ def few_samples():
     patch.setattr(bands, "SAMPLES", {"line": 32, "surface": 4})
     yield
     patch.undo()
+
+
+@pytest.fixture
+def few_pairs(monkeypatch):
+    """Sample contact on few pairs: where all that is compared is of the same pairs."""
+    for module in (tail, film_search):
+        monkeypatch.setattr(module, "PAIRS", 8)

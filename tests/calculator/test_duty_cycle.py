@@ -113,6 +113,7 @@ def test_the_surface_is_weighted_as_the_line_is(rollers, oil):
     assert found["whole_surface_probability"] > 0.1 and "whole_probability" not in found
 
 
+@pytest.mark.usefixtures("few_pairs")
 def test_what_the_oil_does_to_the_lines_depends_on_the_slip_of_each_point(rollers, oil):
     speeds = {"surface_speed [m/s]": [0.5, 0.9], "second_surface_speed [m/s]": [0.5, 0.1]}
     points = speeds | {"force [N]": [400.0, 400.0], "temperature [degC]": [60.0, 60.0]}
@@ -305,6 +306,7 @@ def test_assumptions_hold_for_the_slip_of_each_point(rollers, oil, monkeypatch):
     assert np.abs(np.log(found[:, 0] / alone)).max() > 0.01
 
 
+@pytest.mark.usefixtures("few_pairs")
 def test_what_the_oil_does_to_the_lines_depends_on_the_radii_of_each_point(rollers, oil):
     """The same contact of other radii."""
     given = {"force [N]": [400.0] * 3, "temperature [degC]": [60.0] * 3}

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 from scipy import ndimage
 
+from lube.contact import surface_strip
 from lube.contact.pair_scatter import pair_deviation
 from lube.contact.strip_film import StripFilm, surface_moments, surface_motion
 from lube.contact.surface_strip import SURFACES as SAMPLED
@@ -143,8 +144,11 @@ def test_few_pairs_ever_touch_under_thick_films(spec, surface, rollers):
         assert np.mean(found > 0.0) == pytest.approx(expected, abs=0.08)
 
 
-def test_films_read_from_single_pairs_scatter_as_planned(spec, surface, rollers, study):
+def test_films_read_from_single_pairs_scatter_as_planned(
+    spec, surface, rollers, study, monkeypatch
+):
     """By the slope at the true film; each pair of whole rollers is a record a revolution long."""
+    monkeypatch.setattr(surface_strip, "STRIPS", 250)  # the 80 pairs tell less even so
     moments, side = surface_moments(spec), surface.sides[1]
     films = {"film_thickness": ("film", np.array([2.6, 3.0]) * np.sqrt(moments.height))}
     films |= {"contact_half_width": 0.5 * WIDTH, "reduced_modulus": study.rollers.reduced_modulus}
@@ -166,9 +170,10 @@ def test_films_read_from_single_pairs_scatter_as_planned(spec, surface, rollers,
 
 
 def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
-    spec, surface, rollers, study
+    spec, surface, rollers, study, monkeypatch
 ):
     """Each pair of whole rollers is the record of a rig, a revolution long."""
+    monkeypatch.setattr(surface_strip, "STRIPS", 375)  # the 80 pairs tell less even so
     moments, side = surface_moments(spec), surface.sides[1]
     rms, ratios = np.sqrt(moments.height), np.geomspace(2.0, 5.0, 9)
     films = {"film_thickness": ("film", ratios * rms), "contact_half_width": 0.5 * WIDTH}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.ndimage
 import xarray as xr
-from scipy.interpolate import RegularGridInterpolator
+from scipy.interpolate import NdBSpline, make_interp_spline
 
 from lube.contact import surface_strip
 from lube.contact.surface_answers import COARSEST
@@ -134,6 +134,16 @@ class Unchanged:
         return lambda column, width: heights[:, column : column + width], curvatures
 
 
+def cubic(levels, values):
+    """Tensor product of cubic splines through values on a grid of levels."""
+    knots = []
+    for axis, level in enumerate(levels):
+        spline = make_interp_spline(level, values, axis=axis)
+        values = np.moveaxis(spline.c, 0, axis)
+        knots.append(spline.t)
+    return NdBSpline(tuple(knots), values, 3)
+
+
 class Filtered:
     """Surfaces of both rollers, each of whose waves has the film's response at each column."""
 
@@ -161,11 +171,12 @@ class Filtered:
             outside = levels[2] - np.clip(levels[2], -1.0, 1.0)
             slope = np.cos(np.radians(levels[0]))[:, None] * 2.0 * np.pi * half_width / known
             values = values * np.exp(1j * slope[..., None] * outside)
-            response = RegularGridInterpolator(levels, values, method="cubic")
+            response = cubic(levels, values)
             beyond = position - np.clip(position, -1.0, 1.0)
             slope = 2.0 * np.pi * half_width * along[self._changed][:, None]
-            found = [response((*place, np.full(place[0].size, one))) for one in position]
-            self._responses.append(np.transpose(found) * np.exp(-1j * slope * beyond))
+            sought = [*np.broadcast_arrays(*(each[:, None] for each in place), position)]
+            found = response(np.stack(sought, axis=-1))
+            self._responses.append(found * np.exp(-1j * slope * beyond))
 
     def drawn(self, generator):
         surface, shape = self._surface, self._surface.points
@@ -177,13 +188,15 @@ class Filtered:
         ]
         heights = np.fft.irfft2(sum(waves), shape)
         down, along = self._changed
+        changed_rows, first = np.unique(down, return_index=True)
 
         def across(column, width):
             at = 2j * np.pi / shape[1] * along[:, None] * (column + np.arange(width))
             twice = np.where(along, 2.0, 1.0)[:, None] * np.exp(at)
             added = np.zeros((shape[0], width), complex)
             for own, response in zip(waves, self._responses, strict=True):
-                np.add.at(added, down, own[self._changed][:, None] * response * twice)
+                of_waves = own[self._changed][:, None] * response * twice
+                added[changed_rows] += np.add.reduceat(of_waves, first)
             added = np.fft.ifft(added, axis=0).real / shape[1]
             return heights[:, column : column + width] + added
 

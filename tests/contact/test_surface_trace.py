@@ -13,6 +13,7 @@ from lube.contact.surface_strip import (
     surface_contact,
 )
 from lube.contact.surface_trace import surface_traces
+from lube.grid import film_responses
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
 from lube.study.oil_properties import lubricant_table
@@ -101,12 +102,18 @@ def test_contacts_are_those_of_surfaces_moved_by_hand(study, make_spec, slip, la
 )
 def test_the_strip_touches_as_often_as_by_sampling(study, make_spec, monkeypatch, gap, slip):
     monkeypatch.setattr(surface_trace, "STEPS", 12)
+    # The same responses serve both, whatever the angles between which they are interpolated.
+    monkeypatch.setattr(film_responses, "ANGLES", np.arange(0.0, 91.0, 45.0))
     spec = make_spec(50_000)
     film, layer = films(study, spec, [2.0, 2.3], slip, gap), study.boundary_layer
+    strips = strip_films(spec, film, gap)  # the same in all traces
+    monkeypatch.setattr(surface_trace, "strip_films", lambda *_: strips)
     traces = [surface_traces(spec, LENGTH, film, layer, seed, slip, gap) for seed in range(16)]
     found = [each["contacts"].mean("step").values for each in traces]
     touched = [(each["contacts"] > 0.0).mean("step").values for each in traces]
-    sampled = surface_contact(spec, LENGTH, film, layer, 1, gap)
+    # On a quarter of the surfaces it is still three times as certain as the mean of the traces.
+    fewer = 4 if gap.is_answered else 1
+    sampled = surface_contact(spec, LENGTH, film, layer, 1, gap, fewer=fewer)
     for name, values in (("contacts", found), ("geometric_contact_probability", touched)):
         half = 0.5 * (sampled[f"{name}_upper"] - sampled[f"{name}_lower"]).values
         error = np.hypot(np.std(values, axis=0, ddof=1) / 16**0.5, 0.5 * half)

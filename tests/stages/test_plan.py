@@ -148,14 +148,14 @@ def both_study(study):
 
 @pytest.fixture(scope="module")
 def both_files(both_study, files, sensitivity):
-    with on_few_surfaces():
+    with on_few_surfaces(4):
         areal = made(both_study, ("lubricant", "film", "areal"))["areal"]
     return files | {"areal": areal, "sensitivity": sensitivity}
 
 
 @pytest.fixture(scope="module")
 def both(both_study, both_files):
-    with on_few_surfaces():
+    with on_few_surfaces(4):
         return plan.make(both_study, both_files, 2)
 
 
@@ -190,7 +190,7 @@ def test_the_band_of_the_assumptions_is_of_the_models_that_are_sampled(
 
 def test_surfaces_alone_have_a_plan_without_that_of_lines(both, both_study, both_files):
     alone = both_study.model_copy(update={"contact_model": ("surface",)})
-    with on_few_surfaces():
+    with on_few_surfaces(4):
         found = plan.make(alone, both_files, 2)
     for name in ("half_width", "slope_by_film", "breakthrough_probability"):
         np.testing.assert_array_equal(found[name], both[name].sel(contact_model=["surface"]))

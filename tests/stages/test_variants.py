@@ -7,6 +7,7 @@ from made import made
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
 from lube.physics.flattening import amplitude_ratio
 from lube.schema import POINT_DIMS
+from lube.stages import tail, variants
 from lube.stages.film import film_table
 from lube.stages.variants import STUDY, VARIANTS, make
 from lube.surfaces.synthetic import draw_realisation
@@ -24,6 +25,15 @@ def few(busy_study):
     grid = busy_study.operating_grid.model_copy(update=GRID)
     changes = {"operating_grid": grid, "realisations": 6, "film_formulas": ("paper",)}
     return busy_study.model_copy(update=changes)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_pairs():
+    """The same pairs in both stages, and fewer."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (tail, variants):
+            patch.setattr(module, "PAIRS", 12)
+        yield
 
 
 @pytest.fixture(scope="module")
