@@ -136,7 +136,7 @@ class FilmSearch:
         table, limits = look(half_width, table_at, ends, own)
         ratios = table["film_thickness"].values / self._sigma
         found = np.array([self._crossing(ratios, each) for each in limits])
-        if not found[0] > 0.0:
+        if not (found[0] > 0.0 or np.isclose(ratios[0], ends[0])):  # thinner films are not known
             peak = np.nanargmax(limits[0])
             raise RangeError(
                 f"share: got {self._share:g}, which no film has: the largest share is "
@@ -196,19 +196,38 @@ class FilmSearch:
         films, moments = ratios * self._sigma, surface_moments(spec)
         contacts = expected_contacts(films, moments, length, 2.0 * half_width)
         found = _crossing(ratios, -np.expm1(-contacts), self._share)
-        ratios = np.unique(np.clip(max(found, ratios[0]) * AROUND, *ends))
-        table = self._flat(ratios, half_width) if self._gap.is_plain else table_at(ratios)
-        weaker = self._weaker(table, own)
-        layer, seed = self._rollers.layer, self._seed
-        found = surface_contact(spec, length, table, layer, seed, self._gap, weaker=weaker)
-        return table, [found[f"breakthrough_probability{end}"].values for end in LIMITS]
+        around, is_plain = max(found, ratios[0]) * AROUND, self._gap.is_plain
+        while True:
+            ratios = around if is_plain else np.unique(np.clip(around, *ends))
+            table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
+            weaker = self._weaker(table, own)
+            layer, seed = self._rollers.layer, self._seed
+            found = surface_contact(spec, length, table, layer, seed, self._gap, weaker=weaker)
+            limits = [found[f"breakthrough_probability{end}"].values for end in LIMITS]
+            is_seen = np.nanmax(limits[0]) >= self._share
+            if is_seen or ratios[0] < LAMBDA_RATIOS[0] or ratios[0] in ends:
+                return table, limits
+            around = around * AROUND[0]  # the layer of most contacts holds
 
     def _crossing(self, ratios, probabilities):
-        """Greatest lambda ratio at which a probability equals the share: 0 if it is always less."""
-        if not self._on_surface:
-            return _crossing(ratios, probabilities, self._share)
-        curve = contact_curve(np.log(ratios), probabilities, np.ones(ratios.size))
-        return np.exp(curve.film_at(self._share))
+        """Greatest lambda ratio at which a probability equals the share.
+
+        0 if it is always less, infinite if it is always more.
+        """
+        if (probabilities < self._share).all():
+            return 0.0
+        if (probabilities > self._share).all():
+            return np.inf
+        if self._on_surface:
+            curve = contact_curve(np.log(ratios), probabilities, np.ones(ratios.size))
+            found = np.exp(curve.film_at(self._share))
+        else:
+            found = _crossing(ratios, probabilities, self._share)
+        if 0.0 < found < np.inf:
+            return found
+        # Beside a probability of 0 or 1, from which no curve follows.
+        peak = np.argmax(np.nan_to_num(probabilities))
+        return ratios[peak:][probabilities[peak:] < self._share].min(initial=np.inf)
 
     def _flat(self, ratios, half_width):
         films = {"film_thickness": ("film", ratios * self._sigma), "contact_half_width": half_width}
@@ -260,8 +279,8 @@ def _reached(films, table, levels, tried):
         sought = np.log(films["film_thickness"])
     if sought[0] > thickness.max():
         film, most = 1e6 * np.exp([sought[0], thickness.max()])
+        needed = f"film of {film:.3g} um" if np.isfinite(film) else "thicker film"
         raise RangeError(
-            f"share: this share needs a film of {film:.3g} um, and no {tried} gives more than "
-            f"{most:.3g} um"
+            f"share: this share needs a {needed}, and no {tried} gives more than {most:.3g} um"
         )
     return np.interp(sought, thickness[::rising], levels[::rising], **ends)

@@ -455,3 +455,44 @@ def test_the_band_on_the_surface_is_around_the_answer(rollers, oil, monkeypatch)
         found = lube.required_roughness(rollers, oil, **POINT, **SURFACE, share=0.2, bands=speed)
     lower, upper = assumed(found, "roughness_factor")
     assert lower < found["roughness_factor"] < upper < 1.5 * lower
+
+
+def test_rollers_may_be_much_rougher_than_those_given(rollers, oil, busy):
+    """The film with a shape is needed as far as the rougher rollers touch."""
+    given = POINT | {"share": 0.2, "film_shape": "computed"} | FEW
+    found = lube.required_roughness(rollers, oil, **given)["composite_rms_roughness"].item()
+    smooth = of_roughness("0.02 um", busy.study.line_spec)
+    same = lube.required_roughness(smooth, oil, **given)["composite_rms_roughness"].item()
+    assert same == pytest.approx(found, rel=2e-3)
+
+
+@pytest.mark.parametrize("share", [0.05, 1e-9])
+def test_beyond_the_films_of_the_oil_one_line_says_so(rollers, oil, busy, share):
+    """With a shape no film beyond those is searched."""
+    given = {"share": share, "film_shape": "computed"} | FEW
+    smooth = of_roughness("0.02 um", busy.study.line_spec)
+    found = lube.required_temperature(smooth, oil, "400 N", "500 rpm", **given)
+    assert found["temperature"] == np.inf and found["film_thickness"] == 0.0
+    with pytest.raises(LubeError, match=r"^share: this share needs a thicker film, and no temp"):
+        lube.required_temperature(rollers, oil, "400 N", "1 rpm", **given)
+
+
+def test_on_the_surface_thinner_films_are_searched_where_layers_hold(oil, busy):
+    """Breakthrough is far rarer there than contact; it takes rollers this rough, drawn anew."""
+    spec = busy.study.line_spec
+
+    def holding(rms):
+        lengths = {"longest_wavelength": f"{2.0 * np.pi / spec.q_min!r} m", "points": 50_000}
+        lengths["shortest_wavelength"] = f"{10.0 * spec.spacing!r} m"
+        return Rollers("50 mm", f"{rms!r} um", shear_strength="2 MPa", **lengths)
+
+    with on_few_surfaces(4):
+        found = lube.required_roughness(holding(0.2), oil, **POINT, share=0.3, **SURFACE)
+        rms = 0.2 * found["roughness_factor"].item()
+        more, less = (
+            lube.contact_probability(holding(rms * by), oil, **POINT, **SURFACE)
+            for by in (1.1, 1.0 / 1.1)
+        )
+    assert found["lambda_ratio"] < 1.0
+    name = "surface_breakthrough_probability"
+    assert less[name] < 0.3 < more[name]
