@@ -175,7 +175,7 @@ def _slip(columns):
 
 def _whole(contact, on_pairs, share, windows):
     """Probabilities and rate over the whole cycle, with their limits."""
-    counted = (contact["breakthrough_probability"] * share).sum("point")
+    counted = (contact["breakthrough_probability"] * share).sum("point", skipna=False)
     limits = probability_interval(counted.values, windows)
     # Summed on each pair of lines first: the lines are the same at all points.
     sampled = pair_limits((on_pairs * share).sum("point", skipna=False))

@@ -40,6 +40,18 @@ _LEAST = 1e-40
 """Probability below which contact counts as impossible."""
 
 
+def check_known(is_known: bool) -> None:
+    """Refuse conditions at none of which the film is known.
+
+    Raises
+    ------
+    RangeError
+        In one line.
+    """
+    if not is_known:
+        raise RangeError("the film did not converge at the conditions tried, need others")
+
+
 class FilmSearch:
     """Search for the films at which the probability of contact equals a share of time.
 
@@ -99,6 +111,7 @@ class FilmSearch:
                 raise StudyError(f"{name}: got {size} values, need one")
         ratios = whole["lambda_ratio"].values
         known = np.flatnonzero(np.isfinite(ratios))
+        check_known(known.size)
         known = known[np.argsort(ratios[known])]
 
         def table_at(sought, choices=self.choices):
@@ -135,9 +148,12 @@ class FilmSearch:
         look = self._at_surfaces if self._on_surface else self._at_lines
         table, limits = look(half_width, table_at, ends, own)
         ratios = table["film_thickness"].values / self._sigma
+        known = np.isfinite(limits[0])
+        check_known(known.any())
+        ratios, limits = ratios[known], [each[known] for each in limits]
         found = np.array([self._crossing(ratios, each) for each in limits])
         if not (found[0] > 0.0 or np.isclose(ratios[0], ends[0])):  # thinner films are not known
-            peak = np.nanargmax(limits[0])
+            peak = np.argmax(limits[0])
             raise RangeError(
                 f"share: got {self._share:g}, which no film has: the largest share is "
                 f"{limits[0][peak]:.3g}, at a lambda ratio of {ratios[peak]:.2g}"
@@ -226,7 +242,7 @@ class FilmSearch:
         if 0.0 < found < np.inf:
             return found
         # Beside a probability of 0 or 1, from which no curve follows.
-        peak = np.argmax(np.nan_to_num(probabilities))
+        peak = np.argmax(probabilities)
         return ratios[peak:][probabilities[peak:] < self._share].min(initial=np.inf)
 
     def _flat(self, ratios, half_width):
@@ -267,12 +283,14 @@ def _crossing(ratios, probabilities, share):
     unknown = np.full(ratios.size, np.nan)
     # The logarithm of a rare probability is nearly linear in the square of the ratio.
     curve = peaked_curve(ratios**2, probabilities, unknown, _LEAST)
-    return np.sqrt(max(curve.film_at(share), 0.0))
+    film = curve.film_at(share)  # NaN where all probabilities are 0
+    return np.sqrt(film) if film > 0.0 else 0.0
 
 
 def _reached(films, table, levels, tried):
     """Levels at which a table has the films; infinite beyond the table."""
-    thickness = np.log(table["film_thickness"].values)
+    known = table["film_thickness"].notnull().values
+    thickness, levels = np.log(table["film_thickness"].values[known]), levels[known]
     rising = 1 if thickness[-1] > thickness[0] else -1
     ends = {"left": -rising * np.inf, "right": rising * np.inf}
     with np.errstate(divide="ignore"):  # a lower limit may be 0

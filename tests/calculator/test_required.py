@@ -9,7 +9,7 @@ from made import on_few_surfaces
 
 import lube
 from lube import LubeError, Rollers
-from lube.calculator import bands, film_search
+from lube.calculator import bands, film_search, required
 from lube.calculator.arguments import FORMULA, Choices
 from lube.calculator.bands import Assumptions
 from lube.calculator.operating_points import ensemble
@@ -496,3 +496,49 @@ def test_on_the_surface_thinner_films_are_searched_where_layers_hold(oil, busy):
     assert found["lambda_ratio"] < 1.0
     name = "surface_breakthrough_probability"
     assert less[name] < 0.3 < more[name]
+
+
+@pytest.fixture
+def few_factors(monkeypatch):
+    """Few viscosities and speeds are tried: a film from Reynolds' equation takes long."""
+    monkeypatch.setattr(required, "FACTORS", required.FACTORS[::5])
+
+
+def of_viscosity(value):
+    points = {"40 degC": f"{value!r} mPa*s", "100 degC": f"{0.2 * value!r} mPa*s"}
+    return lube.Oil(viscosity=points, pressure_viscosity="18 1/GPa")
+
+
+@pytest.mark.usefixtures("few_factors")
+@pytest.mark.parametrize("name", ["film_formula", "film_shape"])
+def test_an_oil_of_the_viscosity_has_the_share_under_the_computed_film(rollers, name):
+    """Under pressure it becomes more viscous in another way than the oil given."""
+    point = POINT | {"temperature": "40 degC", name: "computed"} | FEW
+    found = lube.required_viscosity(rollers, of_viscosity(3.0), **point, share=0.02)
+    viscosity = found["dynamic_viscosity"].item()
+    assert viscosity > 30.0
+    back = lube.contact_probability(rollers, of_viscosity(viscosity), **point)
+    assert back["film_thickness"].item() == pytest.approx(found["film_thickness"].item(), rel=1e-3)
+    assert back["breakthrough_probability_mean"].item() == pytest.approx(0.02, rel=0.05)
+
+
+@pytest.mark.usefixtures("few_factors")
+def test_films_that_do_not_converge_are_left_out(rollers):
+    """Those at the lowest speeds."""
+    given = rollers, of_viscosity(3.0), "3 kN"
+    slowest = lube.film(*given, "0.001 m/s", "40 degC", film_formula="computed")
+    assert np.isnan(slowest["film_thickness"])
+    found = lube.required_speed(*given, "40 degC", share=0.02, film_formula="computed", **FEW)
+    speed = (found["speed"].item(), "rpm")
+    back = lube.film(*given, speed, "40 degC", film_formula="computed")
+    np.testing.assert_allclose(back["film_thickness"], found["film_thickness"], rtol=1e-3)
+
+
+def test_conditions_without_a_known_film_are_refused_in_one_line(rollers, monkeypatch):
+    monkeypatch.setattr(required, "TEMPERATURES", 2)
+    given = rollers, of_viscosity(3.0), "3 kN", "0.001 m/s"
+    for choice in ("film_formula", "film_shape"):
+        with pytest.raises(LubeError, match=r"^the film did not converge at the conditions tried"):
+            lube.required_roughness(*given, "40 degC", **{choice: "computed"}, **FEW)
+    with pytest.raises(LubeError, match=r"^the film did not converge at the conditions tried"):
+        lube.required_temperature(*given, film_formula="computed", **FEW)
