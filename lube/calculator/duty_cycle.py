@@ -108,7 +108,8 @@ def duty(
         ``whole_surface_probability`` and ``whole_surface_rate``, with limits as wide as if the
         errors at all points were the same. Limits for one pair, as at each point, are
         ``whole_probability_pair_lower`` and ``_pair_upper``, and those that begin with
-        ``whole_surface_probability_pair``. With `bands` also ``whole_assumed_probability_lower``
+        ``whole_surface_probability_pair``; contact is counted in alignments of pure rolling, and
+        they are for these. With `bands` also ``whole_assumed_probability_lower``
         and ``_upper``, between which 90 % of the cycle's means over pairs lie. The attribute
         ``remarks`` is as in `lube.contact_probability`.
 
@@ -175,7 +176,7 @@ def _slip(columns):
 
 def _whole(contact, on_pairs, share, windows):
     """Probabilities and rate over the whole cycle, with their limits."""
-    counted = (contact["breakthrough_probability"] * share).sum("point")
+    counted = (contact["breakthrough_probability"] * share).sum("point", skipna=False)
     limits = probability_interval(counted.values, windows)
     # Summed on each pair of lines first: the lines are the same at all points.
     sampled = pair_limits((on_pairs * share).sum("point", skipna=False))

@@ -40,6 +40,18 @@ _LEAST = 1e-40
 """Probability below which contact counts as impossible."""
 
 
+def check_known(is_known: bool) -> None:
+    """Refuse conditions at none of which the film is known.
+
+    Raises
+    ------
+    RangeError
+        In one line.
+    """
+    if not is_known:
+        raise RangeError("the film did not converge at the conditions tried, need others")
+
+
 class FilmSearch:
     """Search for the films at which the probability of contact equals a share of time.
 
@@ -99,6 +111,7 @@ class FilmSearch:
                 raise StudyError(f"{name}: got {size} values, need one")
         ratios = whole["lambda_ratio"].values
         known = np.flatnonzero(np.isfinite(ratios))
+        check_known(known.size)
         known = known[np.argsort(ratios[known])]
 
         def table_at(sought, choices=self.choices):
@@ -135,9 +148,12 @@ class FilmSearch:
         look = self._at_surfaces if self._on_surface else self._at_lines
         table, limits = look(half_width, table_at, ends, own)
         ratios = table["film_thickness"].values / self._sigma
+        known = np.isfinite(limits[0])
+        check_known(known.any())
+        ratios, limits = ratios[known], [each[known] for each in limits]
         found = np.array([self._crossing(ratios, each) for each in limits])
-        if not found[0] > 0.0:
-            peak = np.nanargmax(limits[0])
+        if not (found[0] > 0.0 or np.isclose(ratios[0], ends[0])):  # thinner films are not known
+            peak = np.argmax(limits[0])
             raise RangeError(
                 f"share: got {self._share:g}, which no film has: the largest share is "
                 f"{limits[0][peak]:.3g}, at a lambda ratio of {ratios[peak]:.2g}"
@@ -196,19 +212,38 @@ class FilmSearch:
         films, moments = ratios * self._sigma, surface_moments(spec)
         contacts = expected_contacts(films, moments, length, 2.0 * half_width)
         found = _crossing(ratios, -np.expm1(-contacts), self._share)
-        ratios = np.unique(np.clip(max(found, ratios[0]) * AROUND, *ends))
-        table = self._flat(ratios, half_width) if self._gap.is_plain else table_at(ratios)
-        weaker = self._weaker(table, own)
-        layer, seed = self._rollers.layer, self._seed
-        found = surface_contact(spec, length, table, layer, seed, self._gap, weaker=weaker)
-        return table, [found[f"breakthrough_probability{end}"].values for end in LIMITS]
+        around, is_plain = max(found, ratios[0]) * AROUND, self._gap.is_plain
+        while True:
+            ratios = around if is_plain else np.unique(np.clip(around, *ends))
+            table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
+            weaker = self._weaker(table, own)
+            layer, seed = self._rollers.layer, self._seed
+            found = surface_contact(spec, length, table, layer, seed, self._gap, weaker=weaker)
+            limits = [found[f"breakthrough_probability{end}"].values for end in LIMITS]
+            is_seen = np.nanmax(limits[0]) >= self._share
+            if is_seen or ratios[0] < LAMBDA_RATIOS[0] or ratios[0] in ends:
+                return table, limits
+            around = around * AROUND[0]  # the layer of most contacts holds
 
     def _crossing(self, ratios, probabilities):
-        """Greatest lambda ratio at which a probability equals the share: 0 if it is always less."""
-        if not self._on_surface:
-            return _crossing(ratios, probabilities, self._share)
-        curve = contact_curve(np.log(ratios), probabilities, np.ones(ratios.size))
-        return np.exp(curve.film_at(self._share))
+        """Greatest lambda ratio at which a probability equals the share.
+
+        0 if it is always less, infinite if it is always more.
+        """
+        if (probabilities < self._share).all():
+            return 0.0
+        if (probabilities > self._share).all():
+            return np.inf
+        if self._on_surface:
+            curve = contact_curve(np.log(ratios), probabilities, np.ones(ratios.size))
+            found = np.exp(curve.film_at(self._share))
+        else:
+            found = _crossing(ratios, probabilities, self._share)
+        if 0.0 < found < np.inf:
+            return found
+        # Beside a probability of 0 or 1, from which no curve follows.
+        peak = np.argmax(probabilities)
+        return ratios[peak:][probabilities[peak:] < self._share].min(initial=np.inf)
 
     def _flat(self, ratios, half_width):
         films = {"film_thickness": ("film", ratios * self._sigma), "contact_half_width": half_width}
@@ -248,20 +283,22 @@ def _crossing(ratios, probabilities, share):
     unknown = np.full(ratios.size, np.nan)
     # The logarithm of a rare probability is nearly linear in the square of the ratio.
     curve = peaked_curve(ratios**2, probabilities, unknown, _LEAST)
-    return np.sqrt(max(curve.film_at(share), 0.0))
+    film = curve.film_at(share)  # NaN where all probabilities are 0
+    return np.sqrt(film) if film > 0.0 else 0.0
 
 
 def _reached(films, table, levels, tried):
     """Levels at which a table has the films; infinite beyond the table."""
-    thickness = np.log(table["film_thickness"].values)
+    known = table["film_thickness"].notnull().values
+    thickness, levels = np.log(table["film_thickness"].values[known]), levels[known]
     rising = 1 if thickness[-1] > thickness[0] else -1
     ends = {"left": -rising * np.inf, "right": rising * np.inf}
     with np.errstate(divide="ignore"):  # a lower limit may be 0
         sought = np.log(films["film_thickness"])
     if sought[0] > thickness.max():
         film, most = 1e6 * np.exp([sought[0], thickness.max()])
+        needed = f"film of {film:.3g} um" if np.isfinite(film) else "thicker film"
         raise RangeError(
-            f"share: this share needs a film of {film:.3g} um, and no {tried} gives more than "
-            f"{most:.3g} um"
+            f"share: this share needs a {needed}, and no {tried} gives more than {most:.3g} um"
         )
     return np.interp(sought, thickness[::rising], levels[::rising], **ends)

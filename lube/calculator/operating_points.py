@@ -110,15 +110,21 @@ def film_in_si(
     The arguments are those of `film`, `contact_probability` and `ensemble`.
     """
     point = conditions(force, speed, temperature, rollers.pair.first.radius)
-    formulas = np.ravel(film_formula).tolist()
-    if not formulas or not isinstance(formulas[0], str):
-        raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
+    formulas = _names(film_formula)
     model = film_model(rollers, choices or Choices(), slip)
     table = film_of_oil(oil, rollers.pair, point, formulas, **model)
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.assign_coords(force=point[0], speed=point[1])
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
+
+
+def _names(film_formula):
+    """Film formulas as a list."""
+    formulas = np.ravel(film_formula).tolist()
+    if not formulas or not isinstance(formulas[0], str):
+        raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
+    return formulas
 
 
 def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any]:
@@ -279,7 +285,7 @@ def contact_probability(
     choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
     gap = choices.gap
     check_realisations(realisations, seed)
-    assumed = Assumptions(bands, rollers, oil, choices, np.ravel(film_formula)[0], seed)
+    assumed = Assumptions(bands, rollers, oil, choices, _names(film_formula)[0], seed)
     point = conditions(force, speed, temperature, rollers.pair.first.radius)
     assumed.check(dict(zip(("force", "speed", "temperature"), point, strict=True)))
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)

@@ -6,6 +6,7 @@ rollers. The oil carries the whole load: films that keep contact rare leave litt
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,10 +24,12 @@ from lube.calculator.arguments import (
     single,
 )
 from lube.calculator.bands import Assumptions
-from lube.calculator.film_search import FilmSearch
+from lube.calculator.film_search import FilmSearch, check_known
 from lube.calculator.operating_points import conditions_of, film_in_si
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.ehl.film_formulas import formula
 from lube.grid.film_profiles import scaled_film
+from lube.physics.pressure_laws import ROELANDS_VISCOSITY
 from lube.schema import LIMITS, values_with_limits
 from lube.types import ContactModel, FilmShape, OneAmount, RoughnessDeformation
 
@@ -149,9 +152,13 @@ def required_viscosity(
     one = one_name("film_formula", film_formula)
 
     def table(factors, choices):
-        # The film depends on the product of viscosity and speed, so the speed is varied for both.
+        # Formulas depend on the product of viscosity and speed, so the speed is varied for both.
         speeds = rotation * factors, "rpm"
-        return film_in_si(rollers, oil, force, speeds, temperature, one, choices)
+        if choices.gap.is_plain and not formula(one).depends_on_oil:
+            return film_in_si(rollers, oil, force, speeds, temperature, one, choices)
+        thicker = _Thicker(oil, xr.DataArray(factors, dims="factor"))
+        found = film_in_si(rollers, thicker, force, speed, temperature, one, choices)
+        return found.assign_coords(speed=("factor", speeds[0]))
 
     choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
@@ -246,7 +253,8 @@ def required_temperature(
     -------
     Answer
         ``temperature`` (degC) and the variables of `required_film`, each with ``_lower`` and
-        ``_upper``. Infinite if the film is still thick enough at the oil's highest temperature.
+        ``_upper``. Infinite if the film is still thick enough at the oil's highest temperature; a
+        film with a shape, or with a deformed roughness, is then 0, as none thinner is known.
 
     Raises
     ------
@@ -315,6 +323,7 @@ def required_roughness(
     search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
     film = film_in_si(rollers, oil, force, speed, temperature, one, search.choices)
     own = single(film["lambda_ratio"])
+    check_known(np.isfinite(own))
 
     def table_at(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
@@ -330,6 +339,24 @@ def required_roughness(
         sigma, factor = rollers.pair.composite_rms_roughness * own / ratios, own / ratios
     found = {"roughness_factor": factor, "composite_rms_roughness": sigma}
     return _labelled(found | {"lambda_ratio": ratios})
+
+
+@dataclass(frozen=True)
+class _Thicker:
+    """An oil of some times the viscosity, but the same density and pressure-viscosity coefficient.
+
+    Unknown where no law of viscosity under pressure holds.
+    """
+
+    oil: Oil
+    factor: xr.DataArray
+
+    def at(self, temperature):
+        """Properties as from `Oil.at`, over the factor too."""
+        properties = self.oil.at(temperature)
+        viscosity = properties["dynamic_viscosity"] * self.factor
+        known = viscosity.where(viscosity > ROELANDS_VISCOSITY)
+        return properties.assign(dynamic_viscosity=known)
 
 
 def _labelled(found):

@@ -127,11 +127,30 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
 
 
 def scaled_film(film: xr.Dataset, factor: xr.DataArray) -> xr.Dataset:
-    """Multiply films by a factor, with their shape and the gap around the contact if known."""
+    """Multiply films by a factor, with their shape and the gap around the contact if known.
+
+    A scaled profile reaches as far as rollers rougher by the inverse factor may touch.
+    """
     scaled = {"film_thickness": factor * film["film_thickness"]}
     if "film_profile" in film:
+        film = _continued(film, film["composite_rms_roughness"].max() / factor.min())
         scaled["film_profile"] = factor * shaped_films(film)
     return film.assign(scaled)
+
+
+def _continued(film, roughness):
+    """Continue profiles beyond their ends by the dry gap, as far as a roughness, m, may touch."""
+    known = film["film_position"]
+    positions = film_positions(film.assign(composite_rms_roughness=roughness))
+    if positions.size <= known.size:
+        return film
+    positions = xr.DataArray(positions, dims="film_position")
+    inside = positions.clip(known[0], known[-1])
+    beyond = xr.apply_ufunc(hertz_gap, positions) - xr.apply_ufunc(hertz_gap, inside)
+    profile = film["film_profile"].sel(film_position=inside).drop_vars("film_position")
+    profile = profile + beyond * film["contact_half_width"] ** 2 / film["reduced_radius"]
+    film = film.drop_dims("film_position").assign(film_profile=profile)
+    return film.assign_coords(film_position=positions)
 
 
 def film_at_places(film: xr.Dataset) -> xr.DataArray:

@@ -317,3 +317,14 @@ def test_what_the_oil_does_to_the_lines_depends_on_the_radii_of_each_point(rolle
     first, same, other = found.values
     assert first == pytest.approx(same, rel=1e-6)
     assert first != pytest.approx(other, rel=0.1)
+
+
+def test_the_whole_is_unknown_where_the_film_is_at_any_point(rollers):
+    points = {"40 degC": "3 mPa*s", "100 degC": "0.6 mPa*s"}
+    thin = lube.Oil(viscosity=points, pressure_viscosity="18 1/GPa")
+    table = {"force [N]": [3000.0, 400.0], "temperature [degC]": [40.0, 40.0]}
+    table["entrainment_speed [m/s]"] = [0.001, 0.3]
+    found = lube.duty(table, rollers, thin, film_formula="computed", **RUNS)
+    known = found["breakthrough_probability_mean"].notnull().values
+    assert known.tolist() == [False, True]
+    assert np.isnan(found["whole_probability"]) and np.isnan(found["whole_tail_probability"])

@@ -9,7 +9,7 @@ from made import on_few_surfaces
 
 import lube
 from lube import LubeError, Rollers
-from lube.calculator import film_search
+from lube.calculator import film_search, required
 from lube.calculator.operating_points import ensemble
 
 RUNS = {"realisations": 32, "seed": 2}
@@ -321,3 +321,90 @@ def test_the_impossible_is_refused_in_one_line(rollers, oil, ask, message):
     with pytest.raises(LubeError) as error:
         ask(rollers, oil)
     assert message in str(error.value)
+
+
+def test_rollers_may_be_much_rougher_than_those_given(rollers, oil, busy):
+    """The film with a shape is needed as far as the rougher rollers touch."""
+    given = POINT | {"share": 0.2, "film_shape": "computed"} | FEW
+    found = lube.required_roughness(rollers, oil, **given)["composite_rms_roughness"].item()
+    smooth = of_roughness("0.02 um", busy.study.line_spec)
+    same = lube.required_roughness(smooth, oil, **given)["composite_rms_roughness"].item()
+    assert same == pytest.approx(found, rel=2e-3)
+
+
+@pytest.mark.parametrize("share", [0.05, 1e-9])
+def test_beyond_the_films_of_the_oil_one_line_says_so(rollers, oil, busy, share):
+    """With a shape no film beyond those is searched."""
+    given = {"share": share, "film_shape": "computed"} | FEW
+    smooth = of_roughness("0.02 um", busy.study.line_spec)
+    found = lube.required_temperature(smooth, oil, "400 N", "500 rpm", **given)
+    assert found["temperature"] == np.inf and found["film_thickness"] == 0.0
+    with pytest.raises(LubeError, match=r"^share: this share needs a thicker film, and no temp"):
+        lube.required_temperature(rollers, oil, "400 N", "1 rpm", **given)
+
+
+def test_on_the_surface_thinner_films_are_searched_where_layers_hold(oil, busy):
+    """Breakthrough is far rarer there than contact; it takes rollers this rough, drawn anew."""
+    spec = busy.study.line_spec
+
+    def holding(rms):
+        lengths = {"longest_wavelength": f"{2.0 * np.pi / spec.q_min!r} m", "points": 50_000}
+        lengths["shortest_wavelength"] = f"{10.0 * spec.spacing!r} m"
+        return Rollers("50 mm", f"{rms!r} um", shear_strength="2 MPa", **lengths)
+
+    with on_few_surfaces(4):
+        found = lube.required_roughness(holding(0.2), oil, **POINT, share=0.3, **SURFACE)
+        rms = 0.2 * found["roughness_factor"].item()
+        more, less = (
+            lube.contact_probability(holding(rms * by), oil, **POINT, **SURFACE)
+            for by in (1.1, 1.0 / 1.1)
+        )
+    assert found["lambda_ratio"] < 1.0
+    name = "surface_breakthrough_probability"
+    assert less[name] < 0.3 < more[name]
+
+
+@pytest.fixture
+def few_factors(monkeypatch):
+    """Few viscosities and speeds are tried: a film from Reynolds' equation takes long."""
+    monkeypatch.setattr(required, "FACTORS", required.FACTORS[::5])
+
+
+def of_viscosity(value):
+    points = {"40 degC": f"{value!r} mPa*s", "100 degC": f"{0.2 * value!r} mPa*s"}
+    return lube.Oil(viscosity=points, pressure_viscosity="18 1/GPa")
+
+
+@pytest.mark.usefixtures("few_factors")
+@pytest.mark.parametrize("name", ["film_formula", "film_shape"])
+def test_an_oil_of_the_viscosity_has_the_share_under_the_computed_film(rollers, name):
+    """Under pressure it becomes more viscous in another way than the oil given."""
+    point = POINT | {"temperature": "40 degC", name: "computed"} | FEW
+    found = lube.required_viscosity(rollers, of_viscosity(3.0), **point, share=0.02)
+    viscosity = found["dynamic_viscosity"].item()
+    assert viscosity > 30.0
+    back = lube.contact_probability(rollers, of_viscosity(viscosity), **point)
+    assert back["film_thickness"].item() == pytest.approx(found["film_thickness"].item(), rel=1e-3)
+    assert back["breakthrough_probability_mean"].item() == pytest.approx(0.02, rel=0.05)
+
+
+@pytest.mark.usefixtures("few_factors")
+def test_films_that_do_not_converge_are_left_out(rollers):
+    """Those at the lowest speeds."""
+    given = rollers, of_viscosity(3.0), "3 kN"
+    slowest = lube.film(*given, "0.001 m/s", "40 degC", film_formula="computed")
+    assert np.isnan(slowest["film_thickness"])
+    found = lube.required_speed(*given, "40 degC", share=0.02, film_formula="computed", **FEW)
+    speed = (found["speed"].item(), "rpm")
+    back = lube.film(*given, speed, "40 degC", film_formula="computed")
+    np.testing.assert_allclose(back["film_thickness"], found["film_thickness"], rtol=1e-3)
+
+
+def test_conditions_without_a_known_film_are_refused_in_one_line(rollers, monkeypatch):
+    monkeypatch.setattr(required, "TEMPERATURES", 2)
+    given = rollers, of_viscosity(3.0), "3 kN", "0.001 m/s"
+    for choice in ("film_formula", "film_shape"):
+        with pytest.raises(LubeError, match=r"^the film did not converge at the conditions tried"):
+            lube.required_roughness(*given, "40 degC", **{choice: "computed"}, **FEW)
+    with pytest.raises(LubeError, match=r"^the film did not converge at the conditions tried"):
+        lube.required_temperature(*given, film_formula="computed", **FEW)
