@@ -288,11 +288,12 @@ def _crossing(ratios, probabilities, share):
 
 
 def _reached(films, table, levels, tried):
-    """Levels at which a table has the films; infinite beyond the table."""
+    """Levels at which a table has the films; beyond it a speed is 0 or infinite."""
     known = table["film_thickness"].notnull().values
     thickness, levels = np.log(table["film_thickness"].values[known]), levels[known]
     rising = 1 if thickness[-1] > thickness[0] else -1
-    ends = {"left": -rising * np.inf, "right": rising * np.inf}
+    # Films that rise with the level are those of a speed or viscosity, others of a temperature.
+    left, right = (0.0, np.inf) if rising == 1 else (np.inf, -np.inf)
     with np.errstate(divide="ignore"):  # a lower limit may be 0
         sought = np.log(films["film_thickness"])
     if sought[0] > thickness.max():
@@ -301,4 +302,4 @@ def _reached(films, table, levels, tried):
         raise RangeError(
             f"share: this share needs a {needed}, and no {tried} gives more than {most:.3g} um"
         )
-    return np.interp(sought, thickness[::rising], levels[::rising], **ends)
+    return np.interp(sought, thickness[::rising], levels[::rising], left, right)

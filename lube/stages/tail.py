@@ -63,7 +63,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     .. math:: \frac{v}{\Delta x} (\nu + |S|\, \beta)
 
     In uneven windows a run may break and hold several times on its way through the window. All of
-    this is one breakthrough, as long as the points of the run touch without a pause.
+    this is one breakthrough, as long as the points of the run touch without a pause. Where such a
+    window has edges, as under a flat film on lines that the oil answers, pieces that they cut off
+    count, too.
 
     The mean number in the window, divided by this rate, is the mean duration.
 

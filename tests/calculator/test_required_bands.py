@@ -109,7 +109,7 @@ def test_limits_beyond_the_films_tried_are_infinite_or_zero(rollers, oil, monkey
     monkeypatch.setitem(bands.SAMPLES, "line", 8)
     much, little = (uncertain("viscosity", ends) for ends in ("0 % to 1000 %", "-95 % to 10 %"))
     given = POINT | {"share": 0.02, **ONE}
-    for ranges, beyond, factor in ((much, 0, [-np.inf, np.inf]), (little, 1, [np.inf, 0.0])):
+    for ranges, beyond, factor in ((much, 0, [0.0, np.inf]), (little, 1, [np.inf, 0.0])):
         of_speed = without("speed") | {"share": 0.02, **ONE, "bands": ranges}
         speeds = assumed(lube.required_speed(rollers, oil, **of_speed), "speed")
         assert speeds[beyond] == factor[0] and np.isfinite(speeds[1 - beyond])
