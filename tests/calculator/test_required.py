@@ -388,9 +388,10 @@ def test_an_oil_of_the_viscosity_has_the_share_under_the_computed_film(rollers, 
     assert back["breakthrough_probability_mean"].item() == pytest.approx(0.02, rel=0.05)
 
 
-@pytest.mark.usefixtures("few_factors")
-def test_films_that_do_not_converge_are_left_out(rollers):
-    """Those at the lowest speeds."""
+def test_films_that_do_not_converge_are_left_out(rollers, monkeypatch):
+    """Those at the lowest speeds, of which few are tried here: each takes many steps."""
+    tried = required.FACTORS
+    monkeypatch.setattr(required, "FACTORS", np.append(tried[:250:100], tried[250:500:5]))
     given = rollers, of_viscosity(3.0), "3 kN"
     slowest = lube.film(*given, "0.001 m/s", "40 degC", film_formula="computed")
     assert np.isnan(slowest["film_thickness"])
