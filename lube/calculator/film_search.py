@@ -201,8 +201,8 @@ class FilmSearch:
                 ratios = ratios[ratios < 2.0 * found * NEAR[-1]]
         table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
-        windows = self._windows(table, own, self._gap)
-        return table, self._counted(windows) if is_seen else self._sampled(windows, PAIRS)
+        looked_at = self._windows(table, own, self._gap)
+        return table, self._counted(looked_at) if is_seen else self._sampled(looked_at, PAIRS)
 
     def _at_surfaces(self, half_width, table_at, ends, own):
         """Films near the one sought, and the probability on surfaces there, with its limits."""
@@ -213,11 +213,11 @@ class FilmSearch:
         contacts = expected_contacts(films, moments, length, 2.0 * half_width)
         found = _crossing(ratios, -np.expm1(-contacts), self._share)
         around, is_plain = max(found, ratios[0]) * AROUND, self._gap.is_plain
+        layer, seed = self._rollers.layer, self._seed
         while True:
             ratios = around if is_plain else np.unique(np.clip(around, *ends))
             table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
             weaker = self._weaker(table, own)
-            layer, seed = self._rollers.layer, self._seed
             found = surface_contact(spec, length, table, layer, seed, self._gap, weaker=weaker)
             limits = [found[f"breakthrough_probability{end}"].values for end in LIMITS]
             is_seen = np.nanmax(limits[0]) >= self._share
@@ -288,7 +288,10 @@ def _crossing(ratios, probabilities, share):
 
 
 def _reached(films, table, levels, tried):
-    """Levels at which a table has the films; beyond it a speed is 0 or infinite."""
+    """Levels at which a table has the films.
+
+    Beyond the table a speed or viscosity is 0 or infinite, a temperature infinite of either sign.
+    """
     known = table["film_thickness"].notnull().values
     thickness, levels = np.log(table["film_thickness"].values[known]), levels[known]
     rising = 1 if thickness[-1] > thickness[0] else -1
