@@ -39,7 +39,7 @@ from lube.grid.gap import PLAIN, Gap
 from lube.kernels.areal import BLOCK, NO_ANSWER, contacts_per_row, touching_strips
 from lube.physics.excursions import breaking_curvature
 from lube.schema import LIMITS, values_with_limits
-from lube.statistics.confidence import jackknife_interval, mean_interval
+from lube.statistics.confidence import breakthrough_limit, jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
 from lube.surfaces.lay import extents
@@ -337,6 +337,10 @@ def _sampled(spec, surface, finest, strips, certain, sharp, length, seeds, threa
         limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
         results |= values_with_limits(name, limits)
         results |= values_with_limits(counts, mean_interval(rows * numbers[:, :, which]))
+    contacts, sampled = results["contacts_upper"], STRIPS * len(seeds)
+    for name in ("breakthroughs_upper", "breakthrough_probability_upper"):
+        most = np.inf if name == "breakthroughs_upper" else 1.0
+        results[name] = np.minimum(breakthrough_limit(results[name], contacts, sampled), most)
     return results
 
 

@@ -11,12 +11,12 @@ from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
-from lube.statistics.confidence import mean_interval
+from lube.statistics.confidence import breakthrough_limit, mean_interval
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
-from lube.surfaces.rare_contact import check_gaussian
+from lube.surfaces.rare_contact import WINDOWS, check_gaussian
 from lube.surfaces.spectra import pair_moments
 from lube.threads import on_threads
 from lube.types import Datasets
@@ -235,7 +235,10 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
         most = 1.0 if name.endswith("probability") else np.inf
         limits = mean_interval(of_pairs.values, most)
         limited |= values_with_limits(name, [of_pairs[0].copy(data=limit) for limit in limits])
-    return xr.Dataset(limited, attrs=values.attrs)
+    limits = xr.Dataset(limited, attrs=values.attrs)
+    breakthrough, contact = (limits[f"{name}_upper"] for name in _PROBABILITIES)
+    most = breakthrough_limit(breakthrough, contact, WINDOWS * values.sizes["pair"])
+    return limits.assign(breakthrough_probability_upper=breakthrough.copy(data=most))
 
 
 def _why_not(spec, gap):
@@ -263,18 +266,16 @@ def _unknown(film, slide_to_roll_ratio):
 def _table(spec, film, boundary_layer, of_pairs, runs, slide_to_roll_ratio, gap):
     """Variables of some film formulas, unlabelled."""
     slip = xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
-    breakthrough = of_pairs["breakthrough_probability"]
+    rolling = of_pairs.map(_in_pure_rolling)
     in_window, rate = _in_time(spec, film, runs, slip, gap)
     of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
     turn = spec.points[0] * spec.spacing / surface_speeds(film["entrainment_speed"], slip)[0]
     duration = in_window.mean("pair") / rate.mean("pair")
     if gap.is_uniform:
-        rolling = map(_in_pure_rolling, (runs, breakthrough))
-        in_a_revolution = _in_a_revolution(spec, film, *rolling)
+        in_a_revolution = _in_a_revolution(spec, film, _in_pure_rolling(runs), rolling)
     else:
-        turns, lasting, rolling = map(_in_pure_rolling, (turn, duration, breakthrough))
-        limits = pair_limits(xr.Dataset({"breakthrough_probability": rolling}))
-        in_a_revolution = _by_groups(limits, turns / lasting, turns)
+        turns, lasting = map(_in_pure_rolling, (turn, duration))
+        in_a_revolution = _by_groups(pair_limits(rolling), turns / lasting, turns)
     table = {
         **pair_limits(of_pairs),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
@@ -316,14 +317,14 @@ def _in_pure_rolling(values):
     return values.reindex({_SLIP: [0.0]}).isel({_SLIP: 0}, drop=True)
 
 
-def _in_a_revolution(spec, film, runs, breakthrough):
+def _in_a_revolution(spec, film, runs, of_pairs):
     """Fraction of pairs with a breakthrough in a revolution of rolling, and time to the first."""
     points = spec.points[0]
     width = 2.0 * film["contact_half_width"]
     windows = independent_windows(points * spec.spacing, width, spec.longest_wavelength)
     groups = runs.isel(outcome=2, drop=True) * points
     steps = _first_breakthrough(runs.mean("pair"), _window_points(spec, film), points)
-    shares = _touching_pairs(groups, breakthrough, windows)
+    shares = _touching_pairs(groups, of_pairs, windows)
     return shares | {"first_breakthrough_time": spec.spacing / film["entrainment_speed"] * steps}
 
 
@@ -352,18 +353,18 @@ def _sampled(spec, film, windows, slips, seed, pairs, threads=None):
     return xr.Dataset(dict(zip(_PROBABILITIES, (breakthrough, contact), strict=True))), runs
 
 
-def _touching_pairs(groups, breakthrough, windows):
+def _touching_pairs(groups, of_pairs, windows):
     """Fraction of pairs with a breakthrough in a revolution, and its limits.
 
     Groups of breakthroughs come independently of one another. Where contact is so frequent that
     hardly any group ends, they are fewer than the independent windows with a breakthrough, which
     are counted instead.
     """
-    found = pair_limits(xr.Dataset({"groups": groups, "probability": breakthrough}))
+    found = pair_limits(of_pairs.assign(groups=groups))
     shares = {}
     with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
         for end in LIMITS:
-            seen = -windows * np.log1p(-found[f"probability{end}"])
+            seen = -windows * np.log1p(-found[f"breakthrough_probability{end}"])
             expected = np.maximum(found[f"groups{end}"], seen)
             shares[f"touching_pair_share{end}"] = -np.expm1(-expected)
     return shares

@@ -20,8 +20,14 @@ from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
 from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
-from lube.statistics.confidence import mean_interval, probability_interval, ratio_interval
+from lube.statistics.confidence import (
+    breakthrough_limit,
+    mean_interval,
+    probability_interval,
+    ratio_interval,
+)
 from lube.study.study import Study
+from lube.surfaces.rare_contact import WINDOWS
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 from lube.types import Datasets
@@ -184,7 +190,9 @@ def _sampled(variants, windows, study, threads):
     """Probabilities by importance sampling."""
     pairs = study.line_spec, study.seed, PAIRS, threads
     values = np.stack([windows[each].on_pairs(*pairs) for each in variants], axis=1)
-    return _with_limits(variants, values, mean_interval(values, 1.0))
+    mean, lower, upper = mean_interval(values, 1.0)
+    upper[:, 1] = breakthrough_limit(upper[:, 1], upper[:, 0], WINDOWS * PAIRS)
+    return _with_limits(variants, values, (mean, lower, upper))
 
 
 def _counted(variants, windows, study, threads):

@@ -132,11 +132,52 @@ def probability_limits(mean: Array, sample_size: Values, degrees: Values, window
     normal = scipy.special.ndtri(0.5 + CONFIDENCE / 2.0)
     quantile = np.where(scattered, student, normal)
     lower, upper = score_interval(mean, np.where(scattered, sample_size, windows), quantile)
-    bound = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
+    bound = unseen_limit(windows)
     one_sided = [mean == 0.0, mean == 1.0]
     lower = np.select(one_sided, [0.0, 1.0 - bound], np.minimum(lower, 1.0 - bound))
     upper = np.select(one_sided, [bound, 1.0], np.maximum(upper, bound))
     return lower, upper
+
+
+def unseen_limit(windows: Values) -> Values:
+    """Upper limit of the probability of what none of some independent windows shows.
+
+    Parameters
+    ----------
+    windows : float or numpy.ndarray
+        Number of windows.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        The limit, as `probability_limits` explains.
+    """
+    return 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
+
+
+def breakthrough_limit(upper: Values, contact: Values, sampled: int) -> Values:
+    """Upper limit of breakthrough, also where none of the sampled contacts has one.
+
+    Parameters
+    ----------
+    upper : float or numpy.ndarray
+        Upper limit by the scatter, which is 0 there.
+    contact : float or numpy.ndarray
+        Upper limit of the probability of geometric contact, or of the number of contacts.
+    sampled : int
+        Number of sampled contacts.
+
+    Returns
+    -------
+    numpy.ndarray
+        `upper`; where it is 0, `contact` times the limit for as many windows as `sampled`.
+
+    Examples
+    --------
+    >>> breakthrough_limit(np.array([0.0, 0.2]), np.array([0.1, 0.4]), 1000).round(6)
+    array([0.0003, 0.2   ])
+    """
+    return np.where(np.equal(upper, 0.0), contact * unseen_limit(sampled), upper)
 
 
 def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array]:

@@ -279,6 +279,16 @@ def test_a_layer_that_often_holds_is_judged_on_all_strips_where_contact_is_certa
     assert few.identical(found())
 
 
+def test_a_layer_that_no_sampled_contact_breaks_has_an_upper_limit(study, make_spec):
+    oil = lubricant_table(study.lubricants, [40.0])
+    film = film_table(oil, study.rollers, [800.0], [100.0], ["paper"])
+    layer = study.boundary_layer.model_copy(update={"shear_strength": 1e12})
+    found = surface_contact(make_spec(30_000), 10e-3, film, layer, SEED)
+    for name in ("breakthrough_probability", "breakthroughs"):
+        assert found[name] == found[f"{name}_lower"] == 0.0
+        assert 0.0 < found[f"{name}_upper"] < 1e-3 * found["contacts"]
+
+
 @pytest.mark.parametrize(
     ("film_shape", "slip", "lay"),
     [

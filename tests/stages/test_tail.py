@@ -134,6 +134,13 @@ def test_each_interval_encloses_its_estimate(tail):
         assert np.all(tail[f"{name}_upper"] <= 1.0)
 
 
+def test_a_layer_that_no_sampled_contact_breaks_has_an_upper_limit(make_tail, few, tail):
+    strong = make_tail(few.isel(film_formula=[0], temperature=[0]), shear_strength=1e12)
+    assert np.all(strong["breakthrough_probability"] == 0.0)
+    upper = strong["breakthrough_probability_upper"]
+    assert np.all((upper > 0.0) & (upper < 1e-3 * strong["geometric_contact_probability"]))
+
+
 def test_probabilities_do_not_depend_on_slip_but_contacts_become_more_and_shorter(tail):
     for name in PROBABILITIES:
         assert np.all(tail[name] == tail[name].isel(slide_to_roll_ratio=0))

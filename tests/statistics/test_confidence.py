@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lube.statistics.confidence import (
+    breakthrough_limit,
     mean_over_first,
     probability_limits,
     ratio_interval,
@@ -88,6 +89,17 @@ def test_no_limit_is_tighter_than_that_of_contact_never_seen():
     lower, upper = probability_limits(rare, np.array([1e12, 1e12]), 10, 100.0)
     assert upper[0] == pytest.approx(never)
     assert lower[1] == pytest.approx(1.0 - never)
+
+
+@pytest.mark.parametrize("share", [1e-5, 6.05e-4])
+def test_the_limit_of_breakthroughs_never_sampled_holds_in_95_of_100_cases(share):
+    sampled, contact = 5_000, 0.3
+    seen = np.random.default_rng(1).binomial(sampled, share, 20_000)
+    limit = breakthrough_limit(contact * seen / sampled, contact, sampled)
+    is_below = (seen == 0) & (limit < contact * share)
+    assert is_below.mean() < 0.055
+    assert is_below.any() == (share > 6e-4)  # the limit is hardly above what it needs to be
+    assert np.all(limit[seen > 0] == contact * seen[seen > 0] / sampled)
 
 
 def test_interval_of_a_ratio_knows_that_both_see_the_same_lines():
