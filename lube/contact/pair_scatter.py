@@ -44,7 +44,7 @@ def pair_deviation(probability: float, lags: Array, common: Array, perimeter: fl
     probability : float
         Mean probability P over pairs of rollers.
     lags, common : numpy.ndarray
-        From `lube.contact.strip_film.StripFilm.passage`.
+        From `lube.contact.strip_film.StripFilm.common`.
     perimeter : float
         Way of a revolution, m.
 

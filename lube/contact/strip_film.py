@@ -5,30 +5,33 @@ while it passes the contact width, and a little longer, as it has an extent of i
 w, the *passage width*.
 """
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy
 
-from lube.contact.surface_answers import AnsweredStrip
+from lube.contact.surface_answers import AnsweredStrip, moments_by_oil
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import (
+    PassingContacts,
     SurfaceMoments,
-    SurfaceMotion,
-    appearing_contacts,
-    expected_contacts,
+    passing_contacts,
     sharp_surface_summit_share,
 )
 from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.rare_contact import likely_part
-from lube.surfaces.rough_surface import Surface
+from lube.surfaces.rough_surface import Surface, surface_waves
 from lube.surfaces.spectra import pair_moments, spectrum_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair
 
 COLUMNS = 200
-"""Columns of a film with a shape, for the contacts that theory expects."""
+"""Columns of a strip, for the contacts that theory expects."""
+HIGHEST = 37.0
+"""Lambda ratio under which contacts are looked for at most: under thicker films their number is 0
+in floating point, and so are numbers that they are divided by."""
 
 
 @dataclass(frozen=True)
@@ -94,94 +97,105 @@ class StripFilm:
         columns = self._columns(surface.spacing[1])
         return AnsweredStrip(self.answers, surface, columns[0], columns.size, *rows)
 
-    def expected(self, moments: SurfaceMoments, length: float, sharp: float) -> Pair:
+    def contacts(
+        self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0
+    ) -> PassingContacts:
+        """Find how many contacts theory expects in the strip, and how many appear in it.
+
+        Parameters
+        ----------
+        spec : LineSpecLike
+            Parameters of the lines that stand for the surfaces.
+        length : float
+            Length of the strip along the rollers, m.
+        slide_to_roll_ratio : float, optional
+            Slide-to-roll ratio, by default pure rolling.
+
+        Returns
+        -------
+        PassingContacts
+            At `COLUMNS` columns. The slope of the film is neglected beside those of the surfaces.
+        """
+        spacing = self.width / COLUMNS
+        speeds = np.ones((2, 4))
+        speeds[:, 3] = surface_speeds(1.0, slide_to_roll_ratio)
+        both = height_moments(spec) + self._by_oil(spec, self._columns(spacing))
+        moments = np.einsum("rcij,ri,rj->cij", both, speeds, speeds)
+        square, changes = moments[:, 0, 0], moments[:, 1:, 1:]
+        # The rms height changes along the strip, too.
+        along = moments[:, 0, 1:]
+        changes = changes - along[:, :, None] * along[:, None] / square[:, None, None]
+        level, changes = self.films(spacing) / np.sqrt(square), changes / square[:, None, None]
+        level = level - max(level.min() - HIGHEST, 0.0)
+        return passing_contacts(level, changes, length, spacing, self.has_edges)
+
+    def expected(self, spec: LineSpecLike, length: float, sharp: float) -> Pair:
         """Find the numbers of contacts, and of breakthroughs, that theory expects in the strip.
 
         Parameters
         ----------
-        moments : SurfaceMoments
-            As in `lube.physics.excursions.expected_contacts`.
-        length : float
-            Length of the strip along the rollers, m.
+        spec, length
+            As in `contacts`.
         sharp : float
             Mean curvature of the overlap at which the boundary layer breaks, 1/m.
-        """
-        if self.has_edges:
-            films = self.thickness([self.begin])
-            contacts = expected_contacts(films, moments, length, self.width)
-        else:
-            spacing = self.width / COLUMNS
-            films, sharp = self.films(spacing), self.breaking_curvatures(spacing, sharp)
-            contacts = _without_edges(films, moments, length, spacing)
-        broken = contacts * sharp_surface_summit_share(films, moments, sharp)
-        return contacts.sum(), broken.sum()
-
-    def passage(self, moments: SurfaceMoments, length: float) -> tuple[float, Array, Array]:
-        """Find how far a contact moves while it is in the strip.
-
-        Parameters
-        ----------
-        moments, length
-            As in `expected`.
 
         Returns
         -------
-        width : float
-            Mean way of a contact through the strip, m.
-        lags, common : numpy.ndarray
-            Distances of two strips along the circumference, m, and the fraction of their contacts
-            that they have in common.
+        tuple of float
+            The second is NaN where the oil answers the surfaces.
         """
-        if self.has_edges:
-            contacts = expected_contacts(self.thickness([0.0]), moments, length, self.width)
-            passing = _without_edges(self.thickness([0.0]), moments, length, 1.0)
-            width = (contacts / passing).item()
-            common = np.linspace(1.0, 0.0, COLUMNS + 1)
-            return width, width * (1.0 - common), common
-        spacing = self.width / COLUMNS
-        films = self.films(spacing)
-        columns = _without_edges(films, moments, length, spacing)
-        # A contact of both strips reaches above the film at both places.
-        common = np.zeros(films.size + 1)
-        for lag in range(films.size):
-            higher = np.maximum(films[lag:], films[: films.size - lag])
-            common[lag] = _without_edges(higher, moments, length, spacing).sum()
-        width = spacing * columns.sum() / columns.max()
-        return width, spacing * np.arange(common.size), common / common[0]
+        found, spacing = self.contacts(spec, length), self.width / COLUMNS
+        if self.answers:
+            return found.number, np.nan
+        # Films without a shape are the same everywhere.
+        some = slice(1) if self.has_edges else slice(None)
+        films, sharp = self.films(spacing)[some], self.breaking_curvatures(spacing, sharp)[some]
+        share = sharp_surface_summit_share(films, surface_moments(spec), sharp)
+        return found.number, found.number * np.average(share, weights=found.density[some])
 
-    def appearing(self, moments: SurfaceMoments, motion: SurfaceMotion, length: float) -> float:
-        """Find how many times more contacts appear in the strip than in pure rolling.
+    def passage_width(
+        self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0
+    ) -> float:
+        """Find how far the rollers move on average while a contact is in the strip, m.
 
         Parameters
         ----------
-        moments, length
-            As in `expected`.
-        motion : SurfaceMotion
-            From `surface_motion`.
+        spec, length, slide_to_roll_ratio
+            As in `contacts`.
         """
-        rolling = SurfaceMotion(moments.along, -moments.along, -moments.mixed)
-        if self.has_edges:
-            film, size = self.thickness([0.0]), (length, self.width)
-            more = appearing_contacts(film, moments, motion, *size)
-            return (more / appearing_contacts(film, moments, rolling, *size)).item()
-        spacing = self.width / COLUMNS
-        films = self.films(spacing)
-        # Without slip contacts come in where the film is thinnest. With slip, others appear inside.
-        inside = [
-            appearing_contacts(films, moments, motion, length, width) for width in (spacing, 0.0)
-        ]
-        columns = _without_edges(films, moments, length, spacing)
-        return 1.0 + spacing * np.sum(inside[0] - inside[1]) / columns.max()
+        _, number, appearing = self.contacts(spec, length, slide_to_roll_ratio)
+        return number / appearing
+
+    def common(self, spec: LineSpecLike, length: float) -> Pair:
+        """Find which contacts two strips have in common, in pure rolling.
+
+        Parameters
+        ----------
+        spec, length
+            As in `contacts`.
+
+        Returns
+        -------
+        lags, common : numpy.ndarray
+            Distances of both strips along the circumference, m, and the fraction of their contacts
+            that they have in common.
+        """
+        density, number, _ = self.contacts(spec, length)
+        lags, whole = np.arange(density.size + 1), density.sum()
+        # A contact of both strips touches at the place where contacts are rarer.
+        shared = [np.minimum(density[lag:], density[: density.size - lag]).sum() for lag in lags]
+        return number / whole * lags, np.array(shared) / whole
+
+    def _by_oil(self, spec, position):
+        """Find what the oil adds to `height_moments`, at some columns."""
+        if not self.answers:
+            return 0.0
+        each = enumerate(self.answers)
+        found = [moments_by_oil(surface_waves(spec, one), answer, position) for one, answer in each]
+        return np.stack(found)
 
     def _columns(self, spacing):
         return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
-
-
-def _without_edges(films, moments, length, spacing):
-    """Contacts that theory expects in columns of a strip whose films go on beyond them."""
-    # Without edges along the rollers, contacts are in proportion to the width.
-    widths = expected_contacts(films, moments, length, spacing)
-    return widths - expected_contacts(films, moments, length, 0.0)
 
 
 def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
@@ -202,20 +216,31 @@ def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
     return SurfaceMoments(m0, *slopes.tolist(), m4)
 
 
-def surface_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> SurfaceMotion:
-    """Moments of both surfaces in motion, per way of the entrainment speed.
+@functools.lru_cache(maxsize=1)
+def height_moments(spec: LineSpecLike) -> Array:
+    """Second moments of the heights of both surfaces and of their changes.
 
     Parameters
     ----------
     spec : LineSpecLike
         As in `surface_moments`.
-    slide_to_roll_ratio : float
-        Slide-to-roll ratio.
+
+    Returns
+    -------
+    numpy.ndarray, shape (2, 1, 4, 4)
+        Mean squares and products of each surface's heights, of their slopes along rolling and along
+        the rollers, and of their change at a fixed place per way of the surface, m^2 times 1/m for
+        each change.
     """
-    speeds = surface_speeds(1.0, slide_to_roll_ratio)
-    both = [(speed, _slopes(spec, roller)) for roller, speed in enumerate(speeds)]
-    along, _, across = sum(-speed * slopes for speed, slopes in both)
-    return SurfaceMotion(sum(speed**2 * slopes[0] for speed, slopes in both), along, across)
+    found = np.zeros((2, 1, 4, 4))
+    for roller, moments in enumerate(found[:, 0]):
+        along, across, mixed = _slopes(spec, roller)
+        moments[0, 0] = spectrum_moments(spec, roller)["rms_height"] ** 2
+        moments[1:3, 1:3] = [[along, mixed], [mixed, across]]
+    # What moves along rolling changes by the slope there, with the opposite sign.
+    found[..., 3] = -found[..., 1]
+    found[..., 3, :] = -found[..., 1, :]
+    return found
 
 
 def _slopes(spec, roller):

@@ -95,6 +95,41 @@ class SurfaceAnswer(Answer):
         return filters((longest, angle))
 
 
+def moments_by_oil(
+    waves: tuple[Array, Array, Array], answer: SurfaceAnswer, position: Array
+) -> Array:
+    """Find what the oil adds to the second moments of a surface in the gap.
+
+    Parameters
+    ----------
+    waves : tuple of numpy.ndarray
+        From `lube.surfaces.rough_surface.surface_waves`.
+    answer : SurfaceAnswer
+        The answer to them.
+    position : numpy.ndarray, shape (columns,)
+        Columns of a strip, evenly apart, m from the line of centres.
+
+    Returns
+    -------
+    numpy.ndarray, shape (columns, 4, 4)
+        In the order of `lube.contact.strip_film.height_moments`, m^2 times 1/m for each change.
+    """
+    along, across, power = waves
+    filters = answer.filters_at(along, across)
+    changed = np.any(filters, axis=1)
+    along, across, filters, power = (each[changed] for each in (along, across, filters, power))
+    shapes = answer.at(position / answer.half_width)
+    kept = 1.0 + np.einsum("cm,wm->cw", shapes, filters)
+    slopes = np.einsum("cm,wm->cw", np.gradient(shapes, position, axis=0), filters)
+
+    def moments(kept, slopes):
+        changes = slopes + 1j * along * kept, 1j * across * kept, -1j * along * kept
+        each = np.sqrt(power) * np.stack([kept, *changes])
+        return np.einsum("icw,jcw->cij", each.conj(), each).real
+
+    return moments(kept, slopes) - moments(np.ones_like(kept), 0.0)
+
+
 class AnsweredStrip:
     """Both surfaces across a strip, with what the oil adds to them.
 

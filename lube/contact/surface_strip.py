@@ -30,7 +30,7 @@ import scipy.special
 import xarray as xr
 
 from lube.contact.pair_scatter import pair_deviation
-from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments, surface_motion
+from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments
 from lube.contact.surface_answers import COARSEST, SurfaceAnswer
 from lube.contact.waves import answers_at
 from lube.ehl.line_contact import one_blas_thread
@@ -76,7 +76,7 @@ _NUMBERS = {
 }
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
 _SAMPLED = [f"{name}{end}" for pair in _NUMBERS.items() for name in pair for end in LIMITS]
-_VARIABLES = (*_EXPECTED, *_SAMPLED, "passage_width", "pair_deviation")
+_VARIABLES = (*_EXPECTED, *_SAMPLED, "pair_deviation")
 
 
 def surface_contact(
@@ -137,8 +137,7 @@ def surface_contact(
         pair's share of breakthrough in a revolution of pure rolling, ``pair_deviation``, as
         `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film
         is not known or not wanted. Theory neglects the slope of a film with a shape. Where the oil
-        answers the surfaces, the expected numbers are NaN, and way and scatter those of the
-        surfaces as drawn.
+        answers the surfaces, ``expected_breakthroughs`` is NaN.
 
     Raises
     ------
@@ -162,28 +161,22 @@ def surface_contact(
         choices = wanted, length, seeds, threads
         for name, of_known in _contacts(spec, some, changed, sharp, *choices).items():
             values[name][known] = of_known
-    if gap.is_answered:
-        values |= {name: np.full(thickness.size, np.nan) for name in _EXPECTED}
     dims, shape = thickness.dims, thickness.shape
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
     found = xr.Dataset(values, thickness.coords)
-    appearing = _appearing(spec, strips, length, thickness, slide_to_roll_ratio)
-    return found.assign(passage_width=found["passage_width"] / appearing)
-
-
-def _appearing(spec, strips, length, thickness, slide_to_roll_ratio):
-    """How many times more contacts appear than in pure rolling, over films and slip."""
     points = thickness.copy(data=np.arange(thickness.size).reshape(thickness.shape))
-    slips, points = xr.broadcast(xr.DataArray(slide_to_roll_ratio), points)
-    moments = surface_moments(spec)
-    motions = {slip: surface_motion(spec, slip) for slip in np.unique(slips).tolist()}
+    width = _passage_width(spec, strips, length, slide_to_roll_ratio, points)
+    return found.assign(passage_width=width)
+
+
+def _passage_width(spec, strips, length, slide_to_roll_ratio, points):
+    """Way of the rollers while a contact is in the strip, over numbers of strips and slip."""
 
     def at(slip, point):
-        if slip == 0.0 or strips[point] is None:
-            return 1.0
-        return strips[point].appearing(moments, motions[slip], length)
+        strip = strips[point]
+        return strip.passage_width(spec, length, slip) if strip else np.nan
 
-    return xr.apply_ufunc(np.vectorize(at, otypes=[float]), slips, points)
+    return xr.apply_ufunc(np.vectorize(at, otypes=[float]), slide_to_roll_ratio, points)
 
 
 def mean_breaking_curvature(reduced_modulus: float, layer: BoundaryLayer) -> float:
@@ -230,9 +223,8 @@ def strip_films(spec: LineSpecLike, film: xr.Dataset, gap: Gap) -> list[StripFil
 
 def _contacts(spec, strips, changed, sharp, wanted, length, seeds, threads):
     """Variables of `surface_contact` at some strips, of which changed ones are sampled."""
-    moments = surface_moments(spec)
     known = zip(strips, sharp, strict=True)
-    expected = np.array([strip.expected(moments, length, own) for strip, own in known]).T
+    expected = np.array([strip.expected(spec, length, own) for strip, own in known]).T
     certain = expected[0] > MANY
     found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
 
@@ -251,11 +243,11 @@ def _contacts(spec, strips, changed, sharp, wanted, length, seeds, threads):
         holds = certain[some] & (found["breakthrough_probability"][some] < CERTAIN)
         if holds.any():  # few strips do not tell how often the layer breaks
             sample(surface, finest, some[holds], np.zeros(holds.sum(), bool))
-    passages = [strip.passage(moments, length) for strip in strips]
     perimeter = spec.points[0] * spec.spacing
-    shares = zip(found["breakthrough_probability"], passages, strict=True)
-    found["passage_width"] = [width for width, *_ in passages]
-    found["pair_deviation"] = [pair_deviation(share, *one[1:], perimeter) for share, one in shares]
+    found["pair_deviation"] = np.full(len(strips), np.nan)
+    for point in np.flatnonzero(wanted):
+        share, common = found["breakthrough_probability"][point], strips[point].common(spec, length)
+        found["pair_deviation"][point] = pair_deviation(share, *common, perimeter)
     return dict(zip(_EXPECTED, expected, strict=True)) | found
 
 

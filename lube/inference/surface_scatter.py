@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.pair_scatter import RecurringContacts, persistent_part
-from lube.contact.strip_film import COLUMNS, surface_moments, surface_motion
+from lube.contact.strip_film import COLUMNS, surface_moments
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
@@ -99,8 +99,8 @@ def surface_scatter(
         rolling of equal rollers; NaN where the film is not known. What the oil does to the surfaces
         has no effect on it.
     """
-    moments, recurring = surface_moments(spec), RecurringContacts(spec)
-    reach, rms = spec.longest_wavelength / spec.spacing, math.sqrt(moments.height)
+    reach, recurring = spec.longest_wavelength / spec.spacing, RecurringContacts(spec)
+    rms = math.sqrt(surface_moments(spec).height)
     strips = strip_films(spec, films, Gap(film_shape))  # of surfaces as drawn
     durations = turns.reshape(-1, shares.size).T.tolist()
 
@@ -108,10 +108,10 @@ def surface_scatter(
         if strip is None or np.isnan(share):
             return [np.nan] * len(turns)
         thinnest = strip.films(strip.width / COLUMNS).min() / rms
-        _, *common = strip.passage(moments, length)
-        part, shorter = persistent_part(share, *common, recurring.at(thinnest)), 1.0
-        if slip:  # contacts pass in a shorter time
-            shorter /= strip.appearing(moments, surface_motion(spec, slip), length)
+        part = persistent_part(share, *strip.common(spec, length), recurring.at(thinnest))
+        # With slip contacts pass in a shorter time.
+        passages = [strip.passage_width(spec, length, each) for each in (slip, 0.0)]
+        shorter = passages[0] / passages[1]
         motion = speed_ratios(slip), spec.points, reach, min(part / shorter, 1.0), drift
         return [shorter * scatter_ratio(one, *motion) for one in turns]
 

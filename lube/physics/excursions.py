@@ -46,20 +46,22 @@ class SurfaceMoments(NamedTuple):
     curvature: float
 
 
-class SurfaceMotion(NamedTuple):
-    """Moments of a surface in motion, per way of the mean motion along rolling.
+class PassingContacts(NamedTuple):
+    """Expected contacts of a strip through which a surface passes.
 
     Attributes
     ----------
-    change : float
-        Mean square change of the height at a fixed place.
-    along, across : float
-        Mean product of this change and the slope along rolling, and along the rollers.
+    density : numpy.ndarray
+        Contacts per length along rolling, 1/m, at each column of the strip.
+    number : float
+        Contacts in the strip.
+    appearing : float
+        Contacts that appear per way of the mean motion along rolling, 1/m.
     """
 
-    change: float
-    along: float
-    across: float
+    density: Array
+    number: float
+    appearing: float
 
 
 def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
@@ -196,65 +198,100 @@ def expected_contacts(level: Array, moments: SurfaceMoments, length: float, widt
     return scipy.special.ndtr(-height) + (edges + area) * np.exp(-0.5 * height**2)
 
 
-def appearing_contacts(
-    level: Array, moments: SurfaceMoments, motion: SurfaceMotion, length: float, width: Array
-) -> Array:
-    r"""Compute the expected number of contacts that appear in a rectangle per way of motion.
+def passing_contacts(
+    level: Array, changes: Array, length: float, spacing: float, has_edges: bool
+) -> PassingContacts:
+    r"""Compute how many contacts are expected in a strip, and how many appear in it.
 
-    With the way as a third direction a contact is a body in space. The formula gives the bodies
-    that begin per way: those in the rectangle, on its two pairs of sides and at its corners. With
-    the matrices M of the mean squares and products of the changes in space (a, b) and along the way
-    (t),
+    At column x of the strip the height over its rms value exceeds the level u(x) where the surface
+    touches. Contacts begin where a summit rises above the level in the course of the motion, or
+    where the strip's edge cuts a flank that rises. With the mean squares and products of the
+    changes along rolling (x), along the rollers (y) and in the motion (t), at a given slope along
+    the rollers
 
     .. math::
 
-        \left[ a b\, \frac{(u^2 - 1) \sqrt{\det \Sigma_{abt}}}{(2 \pi)^2 m_0^{3/2}}
-        + \frac{u \left( a \sqrt{\det \Sigma_{at}} + b \sqrt{\det \Sigma_{bt}} \right)}
-        {(2 \pi)^{3/2} m_0} + \frac{\sqrt{m_t}}{2 \pi \sqrt{m_0}} \right] e^{-u^2/2}
+        a = m_{xx} - \frac{m_{xy}^2}{m_{yy}}, \quad p = m_{xt} - \frac{m_{xy} m_{yt}}{m_{yy}}, \quad
+        c = m_{tt} - \frac{m_{yt}^2}{m_{yy}} ,
+
+    a strip of the length L has the contacts
+
+    .. math::
+
+        \int n\, dx + \sum_\text{edges} \frac{L \sqrt{m_{yy}}}{4 \pi} e^{-u^2/2} , \qquad
+        n(x) = \frac{L u \sqrt{m_{yy}\, a}}{(2 \pi)^{3/2}}\, e^{-u^2/2} ,
+
+    and there appear
+
+    .. math::
+
+        \int n \left( u - \frac1u \right) \left\langle \left( \frac{p}{a} u' + s\, \xi \right)^+
+        \right\rangle dx + \sum_\text{edges} \frac{n}{2 \sqrt a}
+        \left( \sqrt{c} \mp \frac{p}{\sqrt a} \right), \qquad s^2 = c - \frac{p^2}{a} ,
+
+    with a normal variable :math:`\xi`, and the upper sign where the strip begins. The ends of the
+    rollers add the same without y: there L u (m_yy / 2 pi)^0.5 and u - 1/u become 1 and u.
 
     Parameters
     ----------
-    level, moments, length, width
-        As in `expected_contacts`.
-    motion : SurfaceMotion
-        Moments of the motion.
+    level : numpy.ndarray
+        Levels u, above zero, shape (columns,).
+    changes : numpy.ndarray
+        Covariances of the changes of the height over its rms value along rolling, along the
+        rollers, and per way of the mean motion along rolling, 1/m^2, shape (columns, 3, 3).
+    length, spacing : float
+        Length of the strip along the rollers, and distance of its columns, m.
+    has_edges : bool
+        Whether contacts are cut where the strip ends.
 
     Returns
     -------
-    numpy.ndarray
-        Expected number, 1/m. It is below the true one where contacts merge.
+    PassingContacts
+        The numbers are those of bodies without holes: contacts that merge count as several.
 
     References
     ----------
-    As for `expected_contacts`.
+    R. J. Adler and J. E. Taylor, Random Fields and Geometry, Springer, 2007, chapters 11 and 12.
 
     Examples
     --------
     Without slip a contact passes the width and its own extent:
 
     >>> moments = SurfaceMoments(1.0, along=4.0, across=4.0, mixed=0.0, curvature=100.0)
-    >>> rolling = SurfaceMotion(4.0, along=-4.0, across=0.0)
-    >>> level = np.array([4.0])
-    >>> appearing_contacts(level, moments, rolling, 10.0, 20.0).round(4)
-    array([0.0035])
-    >>> wider = expected_contacts(level, moments, 10.0, np.array([21.0, 20.0]))
-    >>> f"{wider[0] - wider[1]:.4f}"
-    '0.0035'
+    >>> rolling = np.array([[4.0, 0.0, -4.0], [0.0, 4.0, 0.0], [-4.0, 0.0, 4.0]])
+    >>> found = passing_contacts(np.full(40, 4.0), np.tile(rolling, (40, 1, 1)), 10.0, 0.5, True)
+    >>> f"{found.number:.4f} {found.appearing:.4f}"
+    '0.0714 0.0035'
+    >>> wider = expected_contacts(np.array([4.0]), moments, 10.0, np.array([21.0, 20.0]))
+    >>> f"{wider[1]:.4f} {wider[0] - wider[1]:.4f}"
+    '0.0714 0.0035'
     """
-    height = np.asarray(level) / math.sqrt(moments.height)
-    change, along, across = motion
-    # Minors of the matrix, and its determinant. Two of them vanish without slip.
-    along_change = moments.along * change - along**2
-    across_change = moments.across * change - across**2
-    crossed = moments.mixed * change - along * across
-    whole = (along_change * across_change - crossed**2) / change
-    roots = [math.sqrt(max(each, 0.0)) for each in (whole, along_change, across_change)]
-    body = length * width * (height**2 - 1.0) * roots[0]
-    sides = height * (width * roots[1] + length * roots[2])
-    found = body / (2.0 * math.pi * math.sqrt(moments.height)) ** 2 / math.sqrt(moments.height)
-    found += sides / moments.height / (2.0 * math.pi) ** 1.5
-    found += math.sqrt(motion.change / moments.height) / (2.0 * math.pi)
-    return found * np.exp(-0.5 * height**2)
+    decay = np.exp(-0.5 * np.square(level)) / (2.0 * math.pi)
+    (x, y, t), (xy, xt, yt) = (
+        [changes[:, i, j] for i, j in pairs]
+        for pairs in (((0, 0), (1, 1), (2, 2)), ((0, 1), (0, 2), (1, 2)))
+    )
+    sides = length * np.sqrt(y)
+    within = sides * level / math.sqrt(2.0 * math.pi), level - 1.0 / level
+    within = *within, x - xy**2 / y, xt - xy * yt / y, t - yt**2 / y
+    density, appearing, slope = 0.0, 0.0, np.gradient(level, spacing)
+    for weight, order, a, p, c in (within, (1.0, level, x, xt, t)):
+        own = weight * np.sqrt(a) * decay
+        spread = np.sqrt(np.maximum(c - p**2 / a, 1e-24 * c))
+        mean = p / a * slope / spread
+        normal = np.exp(-0.5 * mean**2) / math.sqrt(2.0 * math.pi)
+        rising = spread * (normal + mean * scipy.special.ndtr(mean))
+        appearing += spacing * np.sum(own * np.maximum(order, 0.0) * rising)
+        if has_edges:
+            first, last = (
+                0.5 * weight * decay * (np.sqrt(c) + sign * p / np.sqrt(a)) for sign in (-1.0, 1.0)
+            )
+            appearing += first[0] + last[-1]
+        density += own
+    number = spacing * np.sum(density)
+    if has_edges:
+        number += 0.5 * np.sum((sides * decay + scipy.special.ndtr(-level))[[0, -1]])
+    return PassingContacts(density, number, appearing)
 
 
 def sharp_surface_summit_share(level: Array, moments: SurfaceMoments, curvature: Values) -> Array:

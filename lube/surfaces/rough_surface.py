@@ -20,7 +20,7 @@ import numpy as np
 import scipy.fft
 
 from lube.errors import DataError
-from lube.surfaces.lay import extents, unstretched
+from lube.surfaces.lay import cosine_and_sine, extents, unstretched
 from lube.surfaces.synthetic import LineSpecLike, amplitudes_across_lay
 from lube.types import Array, Pair
 
@@ -32,6 +32,9 @@ POINTS_PER_CONTACT = 6
 """Grid points across the smallest contacts, unless a side then has more than `LARGE` points."""
 LARGE, LARGEST = 4096, 8192
 """Most points along a side to which the grid is refined for small contacts, and most allowed."""
+SIMILAR, DIRECTIONS = 1.08, 16
+"""Classes of waves: ratio of the longest to the shortest wavelength in a class, and number of
+directions. With far more of them the contacts that theory expects change by 0.2 %."""
 UNRESOLVED = math.inf, math.inf
 """The smallest contacts do not matter."""
 
@@ -304,6 +307,41 @@ def rough_surface(
     mixed = 0.0 if is_mirrored else np.sum(variances * number * along * down)
     diagonal = -int(np.sign(mixed))
     return Surface(spacing, points, rms, first, variances, curvatures, is_mirrored, diagonal)
+
+
+@functools.lru_cache(maxsize=2)
+def surface_waves(spec: LineSpecLike, roller: int) -> tuple[Array, Array, Array]:
+    """Waves of one roller's surface, in classes of similar wavelengths and directions.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines.
+    roller : int
+        0 for the first roller, 1 for the second.
+
+    Returns
+    -------
+    along, across : numpy.ndarray
+        Wavenumbers along rolling, not below zero, and along the rollers, rad/m, shape (waves,).
+    power : numpy.ndarray
+        Mean square height of each class, m^2, shape (waves,).
+    """
+    line = spec.lines[roller]
+    first, amplitudes = amplitudes_across_lay(spec, roller)
+    number = np.arange(first, first + amplitudes.size)
+    power = 0.5 * amplitudes**2
+    classes = (np.log(number / first) / np.log(SIMILAR)).astype(np.int64)
+    powers = np.bincount(classes, power)
+    some = powers > 0.0
+    number = np.sqrt(np.bincount(classes, power * number**2)[some] / powers[some])
+    wavenumber = 2.0 * np.pi / (spec.points[roller] * spec.spacing) * number[:, None]
+    psi = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
+    across_lay, ridges = wavenumber * np.cos(psi), wavenumber * np.sin(psi) / line.lay_ratio
+    cosine, sine = cosine_and_sine(line.lay_angle)
+    along, across = ridges * cosine - across_lay * sine, ridges * sine + across_lay * cosine
+    sign, power = np.where(along < 0.0, -1.0, 1.0), np.broadcast_to(powers[some, None], along.shape)
+    return (sign * along).ravel(), (sign * across).ravel(), power.ravel() / DIRECTIONS
 
 
 def _power(spec, roller, step, shells):

@@ -82,8 +82,7 @@ def test_new_alignments_leave_the_scatter_that_theory_says(make_spec):
         rest = found - by_first[:, None] - by_second + found.mean()
         together = np.sum(rest**2) / (PAIRED - 1) ** 2
         alone = by_first.var(ddof=1) + by_second.var(ddof=1) - 2.0 * together / PAIRED
-        _, *common = film.passage(moments, LENGTH)
-        expected = persistent_part(found.mean(), *common, recurring.at(ratio))
+        expected = persistent_part(found.mean(), *film.common(spec, LENGTH), recurring.at(ratio))
         ratios.append(alone / (alone + together) / expected)
     # By 360 surfaces 0.87, 0.94 and 1.01, each +- 0.05.
     assert np.all((np.array(ratios) > 0.65) & (np.array(ratios) < 1.3))

@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 import scipy.ndimage
-import xarray as xr
-from scipy.interpolate import NdBSpline, make_interp_spline
+from whole_surfaces import Filtered, Unchanged, answered_strip
 
 from lube.contact import surface_strip
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import StripFilm, strip_probability, surface_contact
 from lube.errors import StudyError
-from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.stages import film_table
 from lube.stages.tail import pair_probabilities
@@ -109,103 +107,23 @@ def strip_of(spec, film_shape):
     return surface, StripFilm.shaped(*shape(rms, surface.spacing[1]), rms)
 
 
-def answered_strip(study, spec, film_shape, slip):
-    """Surface, strip and film at an operating point: the oil answers the waves."""
-    oil = lubricant_table(study.lubricants, [80.0]).isel(lubricant=0, temperature=0)
-    choices = ["computed"], True, slip
-    point = xr.DataArray(1600.0), xr.DataArray(100.0)
-    film = film_at(oil, study.rollers, *point, *choices, answered_surfaces=spec).squeeze()
-    surface = rough_surface(spec, multiple=2**COARSEST)
-    rms = surface.rms * spec.height_step
-    scale = 2.0 * rms / film["film_thickness"]
-    film = film.assign({name: scale * film[name] for name in ("film_thickness", "film_profile")})
-    (strip,) = surface_strip.strip_films(spec, film, Gap(film_shape, "computed"))
-    return surface, strip, film
-
-
-class Unchanged:
-    """Surfaces as drawn."""
-
-    def __init__(self, surface):
-        self._surface = surface
-
-    def drawn(self, generator):
-        heights, curvatures, _ = self._surface.draw(generator)
-        return lambda column, width: heights[:, column : column + width], curvatures
-
-
-def cubic(levels, values):
-    """Tensor product of cubic splines through values on a grid of levels."""
-    knots = []
-    for axis, level in enumerate(levels):
-        spline = make_interp_spline(level, values, axis=axis)
-        values = np.moveaxis(spline.c, 0, axis)
-        knots.append(spline.t)
-    return NdBSpline(tuple(knots), values, 3)
-
-
-class Filtered:
-    """Surfaces of both rollers, each of whose waves has the film's response at each column."""
-
-    def __init__(self, surface, strip, film):
-        self._surface, half_width = surface, film["contact_half_width"].item()
-        column = np.arange(strip.films(surface.spacing[1]).size)
-        position = (strip.begin + surface.spacing[1] * (column + 0.5)) / half_width
-        rows, columns = surface.points
-        numbers = np.fft.fftfreq(rows, 1.0 / rows), np.arange(columns // 2 + 1)
-        down, along = np.meshgrid(*numbers, indexing="ij")
-        inverse = np.hypot(down / surface.sides[0], along / surface.sides[1])
-        wavelength = 1.0 / np.where(inverse, inverse, 1e-9)
-        known = film["wavelength"].values
-        self._changed = np.nonzero(np.isfinite(wavelength) & (wavelength >= known[-1]))
-        down, along = down / surface.sides[0], along / surface.sides[1]
-        angle = np.degrees(np.arctan2(np.abs(down), along))
-        place = angle[self._changed], -np.log(np.minimum(wavelength[self._changed], known[0]))
-        self._responses = []
-        for roller in (1, 2):
-            parts = (film[f"surface_response_{each}"] for each in ("real", "imaginary"))
-            real, imaginary = (part.sel(roller=roller).values for part in parts)
-            levels = film["wave_angle"].values, -np.log(known), film["response_position"].values
-            values = real + 1j * imaginary - 1.0
-            # Between the waves, outside the contact: with the phase at its edge.
-            outside = levels[2] - np.clip(levels[2], -1.0, 1.0)
-            slope = np.cos(np.radians(levels[0]))[:, None] * 2.0 * np.pi * half_width / known
-            values = values * np.exp(1j * slope[..., None] * outside)
-            response = cubic(levels, values)
-            beyond = position - np.clip(position, -1.0, 1.0)
-            slope = 2.0 * np.pi * half_width * along[self._changed][:, None]
-            sought = [*np.broadcast_arrays(*(each[:, None] for each in place), position)]
-            found = response(np.stack(sought, axis=-1))
-            self._responses.append(found * np.exp(-1j * slope * beyond))
-
-    def drawn(self, generator):
-        surface, shape = self._surface, self._surface.points
-        first = surface.first_part
-        waves = [
-            np.fft.rfft2(generator.standard_normal(shape))
-            * np.sqrt(np.prod(shape) * part * surface.variances)
-            for part in (first, 1.0 - first)
-        ]
-        heights = np.fft.irfft2(sum(waves), shape)
-        down, along = self._changed
-        changed_rows, first = np.unique(down, return_index=True)
-
-        def across(column, width):
-            at = 2j * np.pi / shape[1] * along[:, None] * (column + np.arange(width))
-            twice = np.where(along, 2.0, 1.0)[:, None] * np.exp(at)
-            added = np.zeros((shape[0], width), complex)
-            for own, response in zip(waves, self._responses, strict=True):
-                of_waves = own[self._changed][:, None] * response * twice
-                added[changed_rows] += np.add.reduceat(of_waves, first)
-            added = np.fft.ifft(added, axis=0).real / shape[1]
-            return heights[:, column : column + width] + added
-
-        return across, np.fft.irfft2(sum(waves) * surface.curvatures, shape)
+def drawn_waves(surface, generator):
+    """Waves of both rollers' surfaces."""
+    parts, points = (surface.first_part, 1.0 - surface.first_part), surface.points
+    return [
+        np.fft.rfft2(generator.standard_normal(points))
+        * np.sqrt(np.prod(points) * part * surface.variances)
+        for part in parts
+    ]
 
 
 def searched(surfaces, surface, films, sharp, generator):
     """Shares of strips that touch and that break, and their numbers in a strip, on a surface."""
-    (across, curvatures), points = surfaces.drawn(generator), surface.points
+    waves, points = drawn_waves(surface, generator), surface.points
+    across, curvatures = (
+        surfaces.heights(waves),
+        np.fft.irfft2(sum(waves) * surface.curvatures, points),
+    )
     diagonal = surface.diagonal
     shares, numbers = [], []
     for column in range(0, points[1] - films.size, 40):
@@ -302,5 +220,6 @@ def test_strips_that_the_oil_answers_touch_as_often_as_whole_surfaces_so_filtere
     study, make_spec, film_shape, slip, lay
 ):
     spec = make_spec(50_000, **LAYS[lay])
-    surface, strip, film = answered_strip(study, spec, film_shape, slip)
+    surface = rough_surface(spec, multiple=2**COARSEST)
+    strip, film = answered_strip(study, spec, film_shape, slip, 2.0)
     compare(spec, Filtered(surface, strip, film), surface, strip, FEWER_SURFACES)

@@ -1,0 +1,99 @@
+"""Whole surfaces, as drawn or as the oil answers them, of which any columns can be asked for."""
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import NdBSpline, make_interp_spline
+
+from lube.contact.strip_film import surface_moments
+from lube.contact.surface_strip import strip_films
+from lube.grid.films import film_at
+from lube.grid.gap import Gap
+from lube.study.oil_properties import lubricant_table
+
+
+def answered_strip(study, spec, film_shape, slip, ratio):
+    """Strip and film of some lambda ratio at an operating point: the oil answers the waves."""
+    oil = lubricant_table(study.lubricants, [80.0]).isel(lubricant=0, temperature=0)
+    choices = ["computed"], True, slip
+    point = xr.DataArray(1600.0), xr.DataArray(100.0)
+    film = film_at(oil, study.rollers, *point, *choices, answered_surfaces=spec).squeeze()
+    scale = ratio * np.sqrt(surface_moments(spec).height) / film["film_thickness"]
+    film = film.assign({name: scale * film[name] for name in ("film_thickness", "film_profile")})
+    (strip,) = strip_films(spec, film, Gap(film_shape, "computed"))
+    return strip, film
+
+
+class Unchanged:
+    """Surfaces as drawn."""
+
+    def __init__(self, surface):
+        self._surface = surface
+
+    def heights(self, waves):
+        """Make the heights of some columns, given the waves of both surfaces."""
+        heights = np.fft.irfft2(sum(waves), self._surface.points)
+        return lambda column, width: heights[:, column : column + width]
+
+
+def cubic(levels, values):
+    """Tensor product of cubic splines through values on a grid of levels."""
+    knots = []
+    for axis, level in enumerate(levels):
+        spline = make_interp_spline(level, values, axis=axis)
+        values = np.moveaxis(spline.c, 0, axis)
+        knots.append(spline.t)
+    return NdBSpline(tuple(knots), values, 3)
+
+
+class Filtered:
+    """Surfaces of both rollers, each of whose waves has the film's response at each column."""
+
+    def __init__(self, surface, strip, film):
+        self._surface, half_width = surface, film["contact_half_width"].item()
+        column = np.arange(strip.films(surface.spacing[1]).size)
+        position = (strip.begin + surface.spacing[1] * (column + 0.5)) / half_width
+        rows, columns = surface.points
+        numbers = np.fft.fftfreq(rows, 1.0 / rows), np.arange(columns // 2 + 1)
+        down, along = np.meshgrid(*numbers, indexing="ij")
+        inverse = np.hypot(down / surface.sides[0], along / surface.sides[1])
+        wavelength = 1.0 / np.where(inverse, inverse, 1e-9)
+        known = film["wavelength"].values
+        self._changed = np.nonzero(np.isfinite(wavelength) & (wavelength >= known[-1]))
+        down, along = down / surface.sides[0], along / surface.sides[1]
+        angle = np.degrees(np.arctan2(np.abs(down), along))
+        place = angle[self._changed], -np.log(np.minimum(wavelength[self._changed], known[0]))
+        self._responses = []
+        for roller in (1, 2):
+            parts = (film[f"surface_response_{each}"] for each in ("real", "imaginary"))
+            real, imaginary = (part.sel(roller=roller).values for part in parts)
+            levels = film["wave_angle"].values, -np.log(known), film["response_position"].values
+            values = real + 1j * imaginary - 1.0
+            # Between the waves, outside the contact: with the phase at its edge.
+            outside = levels[2] - np.clip(levels[2], -1.0, 1.0)
+            slope = np.cos(np.radians(levels[0]))[:, None] * 2.0 * np.pi * half_width / known
+            values = values * np.exp(1j * slope[..., None] * outside)
+            response = cubic(levels, values)
+            beyond = position - np.clip(position, -1.0, 1.0)
+            slope = 2.0 * np.pi * half_width * along[self._changed][:, None]
+            sought = [*np.broadcast_arrays(*(each[:, None] for each in place), position)]
+            found = response(np.stack(sought, axis=-1))
+            self._responses.append(found * np.exp(-1j * slope * beyond))
+
+    def heights(self, waves):
+        """Make the heights of some columns, given the waves of both surfaces."""
+        shape = self._surface.points
+        heights = np.fft.irfft2(sum(waves), shape)
+        down, along = self._changed
+        changed_rows, first = np.unique(down, return_index=True)
+
+        def across(column, width):
+            at = 2j * np.pi / shape[1] * along[:, None] * (column + np.arange(width))
+            twice = np.where(along, 2.0, 1.0)[:, None] * np.exp(at)
+            added = np.zeros((shape[0], width), complex)
+            for own, response in zip(waves, self._responses, strict=True):
+                of_waves = own[self._changed][:, None] * response * twice
+                added[changed_rows] += np.add.reduceat(of_waves, first)
+            added = np.fft.ifft(added, axis=0).real / shape[1]
+            return heights[:, column : column + width] + added
+
+        return across
