@@ -114,7 +114,7 @@ class StripFilm:
         Returns
         -------
         PassingContacts
-            At `COLUMNS` columns. The slope of the film is neglected beside those of the surfaces.
+            At `COLUMNS` columns.
         """
         spacing = self.width / COLUMNS
         speeds = np.ones((2, 4))

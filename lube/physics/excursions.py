@@ -204,33 +204,34 @@ def passing_contacts(
     r"""Compute how many contacts are expected in a strip, and how many appear in it.
 
     At column x of the strip the height over its rms value exceeds the level u(x) where the surface
-    touches. Contacts begin where a summit rises above the level in the course of the motion, or
-    where the strip's edge cuts a flank that rises. With the mean squares and products of the
-    changes along rolling (x), along the rollers (y) and in the motion (t), at a given slope along
-    the rollers
+    touches. With the mean squares and products of the changes of this height along rolling (x),
+    along the rollers (y) and in the motion (t), at a given slope along the rollers
 
     .. math::
 
         a = m_{xx} - \frac{m_{xy}^2}{m_{yy}}, \quad p = m_{xt} - \frac{m_{xy} m_{yt}}{m_{yy}}, \quad
         c = m_{tt} - \frac{m_{yt}^2}{m_{yy}} ,
 
-    a strip of the length L has the contacts
+    and a normal variable :math:`\xi`, a strip of the length L has the contacts
 
     .. math::
 
         \int n\, dx + \sum_\text{edges} \frac{L \sqrt{m_{yy}}}{4 \pi} e^{-u^2/2} , \qquad
-        n(x) = \frac{L u \sqrt{m_{yy}\, a}}{(2 \pi)^{3/2}}\, e^{-u^2/2} ,
+        n(x) = \frac{L u \sqrt{m_{yy}}}{4 \pi}\, e^{-u^2/2}
+        \left\langle \left| \sqrt{a}\, \xi - u' \right| \right\rangle .
 
-    and there appear
+    The surface begins to touch on one side of a contact, and ends on the other. Contacts appear
+    where a summit rises above the level in the course of the motion, or where the strip's edge cuts
+    a flank that rises. With :math:`n_0` for n without the slope u', there are per way
 
     .. math::
 
-        \int n \left( u - \frac1u \right) \left\langle \left( \frac{p}{a} u' + s\, \xi \right)^+
-        \right\rangle dx + \sum_\text{edges} \frac{n}{2 \sqrt a}
-        \left( \sqrt{c} \mp \frac{p}{\sqrt a} \right), \qquad s^2 = c - \frac{p^2}{a} ,
+        \int n_0 \left( u - \frac1u \right) \left\langle \left( \frac{p}{a} u'
+        + \sqrt{c - \frac{p^2}{a}}\, \xi \right)^+ \right\rangle dx
+        + \sum_\text{edges} \frac{n_0}{2 \sqrt a} \left( \sqrt{c} \mp \frac{p}{\sqrt a} \right),
 
-    with a normal variable :math:`\xi`, and the upper sign where the strip begins. The ends of the
-    rollers add the same without y: there L u (m_yy / 2 pi)^0.5 and u - 1/u become 1 and u.
+    the upper sign where the strip begins. The ends of the rollers add the same without y: there
+    :math:`L u (m_{yy} / 2 \pi)^{1/2}` and :math:`u - 1/u` become 1 and u.
 
     Parameters
     ----------
@@ -276,22 +277,28 @@ def passing_contacts(
     within = *within, x - xy**2 / y, xt - xy * yt / y, t - yt**2 / y
     density, appearing, slope = 0.0, 0.0, np.gradient(level, spacing)
     for weight, order, a, p, c in (within, (1.0, level, x, xt, t)):
-        own = weight * np.sqrt(a) * decay
-        spread = np.sqrt(np.maximum(c - p**2 / a, 1e-24 * c))
-        mean = p / a * slope / spread
-        normal = np.exp(-0.5 * mean**2) / math.sqrt(2.0 * math.pi)
-        rising = spread * (normal + mean * scipy.special.ndtr(mean))
-        appearing += spacing * np.sum(own * np.maximum(order, 0.0) * rising)
+        spread = np.sqrt(a)
+        begin, end = (_mean_rise(sign * slope, spread) for sign in (-1.0, 1.0))
+        density += weight * decay * math.sqrt(0.5 * math.pi) * (begin + end)
+        rising = _mean_rise(p / a * slope, np.sqrt(np.maximum(c - p**2 / a, 1e-24 * c)))
+        more = weight * spread * decay * np.maximum(order, 0.0) * rising
+        appearing += spacing * np.sum(more)
         if has_edges:
             first, last = (
-                0.5 * weight * decay * (np.sqrt(c) + sign * p / np.sqrt(a)) for sign in (-1.0, 1.0)
+                0.5 * weight * decay * (np.sqrt(c) + sign * p / spread) for sign in (-1.0, 1.0)
             )
             appearing += first[0] + last[-1]
-        density += own
     number = spacing * np.sum(density)
     if has_edges:
         number += 0.5 * np.sum((sides * decay + scipy.special.ndtr(-level))[[0, -1]])
     return PassingContacts(density, number, appearing)
+
+
+def _mean_rise(mean, spread):
+    """Mean of a normal variable, counted as zero where it is below."""
+    ratio = mean / spread
+    density = np.exp(-0.5 * ratio**2) / math.sqrt(2.0 * math.pi)
+    return spread * (density + ratio * scipy.special.ndtr(ratio))
 
 
 def sharp_surface_summit_share(level: Array, moments: SurfaceMoments, curvature: Values) -> Array:
