@@ -151,8 +151,8 @@ def test_contacts_appear_with_slip_as_often_as_on_surfaces_in_motion(make_spec, 
     ("film_shape", "slip", "lay"),
     [
         ("flat", 0.0, {}),
-        ("computed", 0.5, {}),
-        ("flat", 0.5, {"lay_ratio": 2.0, "lay_angle": 60.0}),
+        pytest.param("computed", 0.5, {}, marks=pytest.mark.slow),
+        pytest.param("flat", 0.5, {"lay_ratio": 2.0, "lay_angle": 60.0}, marks=pytest.mark.slow),
     ],
 )
 def test_contacts_that_the_oil_answers_appear_as_often_as_on_surfaces_in_motion(
