@@ -5,6 +5,7 @@ while it passes the contact width, and a little longer, as it has an extent of i
 w, the *passage width*.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -29,6 +30,8 @@ from lube.types import Array, Pair
 
 COLUMNS = 200
 """Columns of a film with a shape, for the contacts that theory expects."""
+HIGHEST = 37.0
+"""Lambda ratio up to which the number of contacts is a number above zero."""
 
 
 @dataclass(frozen=True)
@@ -133,13 +136,14 @@ class StripFilm:
             that they have in common.
         """
         if self.has_edges:
-            contacts = expected_contacts(self.thickness([0.0]), moments, length, self.width)
-            passing = _without_edges(self.thickness([0.0]), moments, length, 1.0)
+            films = _lowered(self.thickness([0.0]), moments)
+            contacts = expected_contacts(films, moments, length, self.width)
+            passing = _without_edges(films, moments, length, 1.0)
             width = (contacts / passing).item()
             common = np.linspace(1.0, 0.0, COLUMNS + 1)
             return width, width * (1.0 - common), common
         spacing = self.width / COLUMNS
-        films = self.films(spacing)
+        films = _lowered(self.films(spacing), moments)
         columns = _without_edges(films, moments, length, spacing)
         # A contact of both strips reaches above the film at both places.
         common = np.zeros(films.size + 1)
@@ -161,11 +165,11 @@ class StripFilm:
         """
         rolling = SurfaceMotion(moments.along, -moments.along, -moments.mixed)
         if self.has_edges:
-            film, size = self.thickness([0.0]), (length, self.width)
+            film, size = _lowered(self.thickness([0.0]), moments), (length, self.width)
             more = appearing_contacts(film, moments, motion, *size)
             return (more / appearing_contacts(film, moments, rolling, *size)).item()
         spacing = self.width / COLUMNS
-        films = self.films(spacing)
+        films = _lowered(self.films(spacing), moments)
         # Without slip contacts come in where the film is thinnest. With slip, others appear inside.
         inside = [
             appearing_contacts(films, moments, motion, length, width) for width in (spacing, 0.0)
@@ -175,6 +179,11 @@ class StripFilm:
 
     def _columns(self, spacing):
         return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
+
+
+def _lowered(films, moments):
+    """Films as they are, or so much lower that there are contacts, for ratios of their numbers."""
+    return films - max(films.min() - HIGHEST * math.sqrt(moments.height), 0.0)
 
 
 def _without_edges(films, moments, length, spacing):

@@ -200,3 +200,18 @@ def test_a_thicker_film_is_on_the_same_strip(spec):
         rise = 0.0 - strip.breaking_curvatures(1e-6, 0.0)
         np.testing.assert_allclose(0.0 - thicker.breaking_curvatures(1e-6, 0.0), 1.1 * rise)
         np.testing.assert_array_equal(strip.thicker(1.0).films(1e-6), strip.films(1e-6))
+
+
+def test_where_a_film_is_too_thick_for_any_contact_it_would_pass_as_under_a_thinner_one(spec):
+    moments, motion = surface_moments(spec), surface_motion(spec, -0.5)
+    rms, across = np.sqrt(moments.height), np.linspace(-2 * WIDTH, 2 * WIDTH, 401)
+    for bend in (None, 0.1 * rms * (across / WIDTH) ** 2):
+        found = []
+        for ratio in (36.0, 60.0):
+            film = StripFilm.flat(ratio * rms, 0.5 * WIDTH)
+            if bend is not None:
+                film = StripFilm.shaped(across, ratio * rms + bend, rms)
+            width, *common = film.passage(moments, LENGTH)
+            found.append([width, film.appearing(moments, motion, LENGTH)])
+            assert pair_deviation(0.0, *common, 1.0) == 0.0
+        np.testing.assert_allclose(*found, rtol=0.5)
