@@ -182,7 +182,7 @@ def _probabilities(deviating, unit, points):
         if some.size:
             table = run(deviating, model, samples[some], runs.isel(run=some))
             # Without a value where the layer holds in all contacts that were sampled.
-            probability = table["breakthrough_probability"].fillna(0.0).mean("seed")
+            probability = table["breakthrough_probability"].fillna(0.0).mean("seed").clip(max=1.0)
             probability = probability.where(table["film_thickness"].notnull())
             found[some] = probability.values
     return found.reshape(len(unit), number)

@@ -149,6 +149,7 @@ def _bands(spec, roller, answer, points):
     edges = np.arange(0, amplitudes.size, band)
     waves = first + np.arange(amplitudes.size)
     powers = (amplitudes / spec.height_step) ** 2 / 2.0
+    edges = edges[np.add.reduceat(powers, edges) > 0.0]  # with a lay the longest wave may be 0
     power = np.add.reduceat(powers, edges)
     middle = np.add.reduceat(powers * waves, edges) / power
     numbers = np.log(answer.wavenumber)

@@ -30,6 +30,11 @@ class WindowFilm:
     film: Array
     before: int
 
+    @property
+    def at_ends(self) -> int:
+        """The lowest film at the first or the last point, height steps."""
+        return self.film[..., [0, -1]].min()
+
     def below(self, height: float) -> "WindowFilm":
         """Return the part in which the film is lower than a height, at least one point.
 
@@ -53,7 +58,7 @@ class WindowFilm:
         first, last = reached[[0, -1]] if reached.size else (self.before, self.before)
         if first == 0 or last == films.shape[1] - 1:
             raise DataError(
-                f"film profile: got {films[:, [0, -1]].min():.3g} height steps at its end, need "
+                f"film profile: got {self.at_ends:.3g} height steps at its end, need "
                 f"more than the height of the lines, {height:.3g}, from a longer profile"
             )
         return WindowFilm(self.film[..., first : last + 1], int(self.before - first))

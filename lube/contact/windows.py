@@ -357,13 +357,14 @@ class ContactWindows:
         """Both surfaces, with the answers of the oil if there are any, and the points' window."""
         answers = self._answers[points[0]] if waves else []
         filtered = _filtered(waves, answers)
-        highest = sum(surface.line.max() for surface in drawn)
+        highest = highest_drawn = sum(surface.line.max() for surface in drawn)
         for answer, lines in zip(answers, filtered, strict=True):
             highest += np.sum(np.abs(answer.shapes) * np.abs(lines).max(axis=0), axis=1).max()
         shift = answers[0].shift(self._grid.spacing) if waves else BLOCK_SHIFT
         reached = self._window(points)
         if self._gap.has_shape:
-            reached = reached.below(highest)
+            # What the oil adds is far lower than this sum, and at the ends no line is so high.
+            reached = reached.below(min(highest, max(highest_drawn, reached.at_ends)))
         # For another layout in memory Numba would compile the kernel once more.
         window = Window(np.ascontiguousarray(reached.film), reached.before, shift)
         nodes = (np.arange(node_count(window)) << shift) - phase_of(window)

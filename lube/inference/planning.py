@@ -90,7 +90,8 @@ def slopes(
         return windows.on_pairs(spec, seed, PAIRS, threads)[:, 1].mean(axis=0)
 
     changed = [sampled(*change) for change in zip(_THICKER, _WEAKER, strict=True)]
-    return Slopes(sampled(1.0, 1.0), *_slopes(*changed))
+    # An estimate of the probability may exceed one.
+    return Slopes(np.minimum(sampled(1.0, 1.0), 1.0), *_slopes(*changed))
 
 
 def on_surfaces(
@@ -230,8 +231,7 @@ def relative_error(
     array([0.1, inf])
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        # An estimate of the probability may exceed one.
-        variance = ratio * np.maximum(1.0 - probability, 0.0) / (sample_size * probability)
+        variance = ratio * (1.0 - probability) / (sample_size * probability)
         enough = sample_size / ratio * np.minimum(probability, 1.0 - probability) >= LEAST
     return np.where(enough, np.sqrt(variance + np.square(reading)), np.inf)
 

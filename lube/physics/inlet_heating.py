@@ -70,12 +70,12 @@ def heating_factor(
     Returns
     -------
     float or numpy.ndarray
-        The factor.
+        The factor, over all dimensions of loading, slip and film.
     """
     if model == "computed":
         return inlet_equation(loading, slip, film)
     if model == "wilson-sheu-1983":
-        return wilson_sheu(loading, slip)
+        return wilson_sheu(loading, slip) * np.ones_like(film)  # over its dimensions, too
     return zhu_cheng(loading, slip, relative_pressure)
 
 

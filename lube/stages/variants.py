@@ -145,18 +145,19 @@ def _film(variant, study, inputs):
     """Film of a variant, in pure rolling or at the study's first slip."""
     film = at_slip(inputs["film"]).isel(film_formula=0).transpose(*POINT_DIMS, ...)
     profile = inputs["film_profile"].transpose(*POINT_DIMS, "film_position")
-    is_heated = study.inlet_shear_heating != "none"
-    thinner = film["inlet_shear_heating_factor"] if is_heated else 1.0
+    shape = "computed" if variant.film_shape == "computed" else "flat"
+    is_own = variant.film == study.film_formulas[0]
     if variant.film == "computed" and study.load_sharing == "none":
+        is_heated = study.inlet_shear_heating != "none"
+        thinner = film["inlet_shear_heating_factor"] if is_heated else 1.0
         film = film.assign(film_thickness=thinner * profile["central_film"])
         film["formula_place"] = "central"
-    elif variant.film != study.film_formulas[0]:
+    elif not is_own or (study.load_sharing != "none" and shape != study.film_shape):
         levels = study.rough_rollers, film["force"], film["speed"], [variant.film]
-        names = "inlet_meniscus", "rough_surfaces", "load_sharing"
-        choices = {name: study.film_model[name] for name in names}
-        other = film_at(inputs["lubricant"], *levels, **choices).isel(film_formula=0)
-        film = film.assign(film_thickness=thinner * other["film_thickness"])
-        film["formula_place"] = other["formula_place"]
+        changed = {"with_shape": shape == "computed", "answered_lines": None}
+        changed["slide_to_roll_ratio"] = rolling(study.slips)
+        other = film_at(inputs["lubricant"], *levels, **study.film_model | changed)
+        film = film.assign(other[["film_thickness", "formula_place"]].isel(film_formula=0))
     film["film_thickness"] = film["film_thickness"].transpose(*POINT_DIMS)
     kind, names = "film_response", VARIABLES
     if variant.is_on_surface and "surface_response" in inputs:

@@ -101,6 +101,7 @@ def _waves(spec):
     wavenumber, variance = wavenumber[order], variance[order]
     edges = np.geomspace(wavenumber[0], wavenumber[-1], BANDS + 1)[:-1]
     edges = np.unique(np.searchsorted(wavenumber, edges))
+    edges = edges[np.add.reduceat(variance, edges) > 0.0]  # with a lay the longest may be 0
     of_bands = np.add.reduceat(variance, edges)
     return np.add.reduceat(variance * wavenumber, edges) / of_bands, of_bands
 

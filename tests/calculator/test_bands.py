@@ -49,6 +49,15 @@ def test_the_bands_enclose_the_answer_and_what_is_less_certain_has_a_wider_one(r
     assert (wide[name] < found[name]).all()
 
 
+def test_contact_all_the_time_has_no_band_beyond_it(oil):
+    weak = {"shear_strength": "0.02 MPa", "longest_wavelength": "0.05 mm", "points": 20_000}
+    rough = lube.Rollers("8 mm", "0.2 um", shortest_wavelength="10 um", **weak)
+    points = POINTS | {"force": ["200 N", "400 N", "800 N"]}
+    found = lube.contact_probability(rough, oil, **points, realisations=2, bands=KELVIN)
+    upper = found.assumed_breakthrough_probability_upper
+    assert (upper > 0.99).all() and (upper <= 1.0).all()
+
+
 def test_a_range_of_the_temperature_is_what_two_temperatures_say(rollers, oil):
     found = lube.contact_probability(
         rollers, oil, "400 N", "100 rpm", "70 degC", realisations=2, bands=KELVIN

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from plain_answers import PlainAnswer
 
-from lube.contact.answered_windows import answered_windows
+from lube.contact.answered_windows import answered_windows, rms_along
 from lube.contact.waves import answers_at
 from lube.stages import film_table, lubricant_table
 from lube.surfaces.synthetic import wave_amplitudes
@@ -83,3 +83,16 @@ def test_added_covariances_are_those_of_the_waves(is_moving, window, point, spec
         some = np.einsum("pa,ptab,tb->pt", both, table, both)
         np.testing.assert_allclose(some, expected, atol=0.01)
         assert np.abs(expected).max() > 0.03
+
+
+def test_a_wave_without_height_has_no_effect_in_a_window_so_wide_that_it_is_a_band(
+    make_spec, study
+):
+    spec = make_spec(30_000, lay_ratio=5.0, lay_angle=90.0)
+    assert wave_amplitudes(spec, 0)[1][0] == 0.0
+    levels = [1600.0], [100.0], ["computed"]
+    oil = lubricant_table(study.lubricants, [80.0])
+    point = film_table(oil, study.rollers, *levels, answered_lines=spec).squeeze()
+    answers = tuple(answers_at(point, False).values)
+    narrow, wide = (rms_along(spec, 2 * half, half, answers) for half in (30, 2000))
+    np.testing.assert_allclose(wide[1970:2030], narrow, rtol=0.01)

@@ -197,3 +197,17 @@ def test_points_that_differ_in_slip_alone_are_told_apart_where_the_oil_answers(
     again = film_table(oil, study.rollers, *levels, answered_lines=spec)
     (key,) = ContactWindows(spec, again, weak, Gap("flat", "computed")).keys
     assert key == answered.keys[0] != answered.keys[1]
+
+
+def test_lines_that_the_oil_lifts_far_under_a_thin_film_are_counted_as_often_as_sampled(
+    make_spec, weak, study
+):
+    """The greatest conceivable height is beyond the profile's ends, no height that occurs is."""
+    spec = make_spec(20_000)
+    oil = lubricant_table(study.lubricants, [80.0])
+    shape = {"with_shape": True, "slide_to_roll_ratio": [1.0], "answered_lines": spec}
+    film = film_table(oil, study.rollers, [20.0], [0.5], ["computed"], **shape)
+    windows = ContactWindows(spec, film, weak, Gap("computed", "computed"))
+    counted = [windows.count(draw_realisation(spec, 11, n), 1.0)[0, 0] for n in range(4)]
+    sampled = [windows.sample(spec, 11, n)[0][0, 0] for n in range(40)]
+    assert np.mean(counted) == pytest.approx(np.mean(sampled), rel=0.05)

@@ -55,6 +55,14 @@ def test_contact_falls_with_the_film_the_steeper_the_thicker_it_is(found):
     assert (found.by_layer < 0.0).all()
 
 
+def test_contact_all_the_time_has_no_probability_above_one(spec, film, layer):
+    rms = np.hypot(*spec.rms_height)
+    thin = film.assign(film_thickness=("lambda_ratio", np.array([0.1, 0.2, 0.4]) * rms))
+    weak = layer.model_copy(update={"shear_strength": 0.01 * layer.shear_strength})
+    certain = slopes(spec, thin, weak, PLAIN, 2)
+    assert (certain.probability > 0.99).any() and certain.probability.max() <= 1.0
+
+
 def test_slopes_are_those_between_distant_films(spec, film, layer, found):
     ends = [film.assign(film_thickness=film.film_thickness * times) for times in (0.95, 1.05)]
     lower, upper = (slopes(spec, end, layer, PLAIN, seed=1).probability for end in ends)

@@ -13,6 +13,7 @@ from lube.ehl import film_formulas
 from lube.errors import DataError, LubeError
 from lube.grid.films import FilmGroups, film_at
 from lube.inference.at_records import film_at_records
+from lube.physics.inlet_heating import INLET_HEATING
 from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.study.oil_properties import lubricant_table
@@ -162,6 +163,16 @@ def test_inlet_shear_heating_thins_the_film_by_its_factor_at_each_slip():
     at = {"force": 1600, "speed": 200, "temperature": 40, "slide_to_roll_ratio": 2}
     assert factor.isel(lubricant=0).sel(at) == pytest.approx(0.80, abs=0.005)
     assert "starvation_factor" not in hot
+
+
+@pytest.mark.parametrize("heating", INLET_HEATING[1:])
+def test_every_heating_has_a_factor_at_every_point(heating):
+    hot = corrected(inlet_shear_heating=heating)
+    schema.check(hot, "film")
+    factor = hot["inlet_shear_heating_factor"]
+    assert (factor < 1.0).all()
+    expected = (corrected()["film_thickness"] * factor).transpose(*schema.CONTACT_DIMS)
+    np.testing.assert_allclose(hot["film_thickness"], expected, rtol=1e-14)
 
 
 def test_a_meniscus_thins_the_film_by_its_factor_before_heating_does():

@@ -83,6 +83,21 @@ def test_films_are_those_of_the_film_stage(found, files, few):
     np.testing.assert_allclose(ratio, 2.922 / 2.992, rtol=1e-12)
 
 
+@pytest.mark.usefixtures("few_surfaces")
+def test_films_that_share_the_load_do_so_by_their_shape_and_heated(few):
+    grid = few.operating_grid.model_copy(update={"force": (100.0,), "temperature": (80.0,)})
+    changes = {"load_sharing": "iterated", "inlet_shear_heating": "wilson-sheu-1983"}
+    shared = few.model_copy(update={"operating_grid": grid, "realisations": 2} | changes)
+    found = made(shared, KINDS)["variants"]["film_thickness"].squeeze()
+    of_shapes = (("flat", "computed, flat"), ("computed", "computed"), ("computed", "complete"))
+    for shape, name in of_shapes:
+        itself = {"film_shape": shape, "film_formulas": ("computed",)}
+        film = made(shared.model_copy(update=itself), ["lubricant", "film"])["film"]
+        expected = film["film_thickness"].item()
+        assert found.sel(variant=name).item() == pytest.approx(expected, rel=1e-5), name
+    assert found.sel(variant="computed") > 1.005 * found.sel(variant="computed, open")
+
+
 def test_a_thinner_film_has_more_contact_and_every_ratio_its_interval(found):
     printed, source = (found["breakthrough_probability"].sel(variant=one) for one in FORMULAS[:2])
     assert (source > printed).all()

@@ -9,6 +9,7 @@ from lube.surfaces.contact_pressure import contact_pressure
 from lube.surfaces.elastic_contact import press_surface
 from lube.surfaces.rough_surface import rough_surface
 from lube.surfaces.spectra import pair_moments
+from lube.surfaces.synthetic import wave_amplitudes
 
 MODULUS = 115e9
 
@@ -52,6 +53,17 @@ def test_pressure_is_that_of_a_numerical_solution(spec):
     gaps = np.array([contact.gap for contact in pressed])
     assert 0.4 * rms < gaps[-1] and 1.9 * rms < gaps[0]
     np.testing.assert_allclose(contact_pressure(spec, MODULUS, gaps), pressures, rtol=0.2)
+
+
+def test_ridges_press_as_somewhat_longer_ones(make_spec):
+    """Also at ratios of 70 and 80, where the line's longest wave happens to have no height."""
+    lay = {"longest_wavelength": 4e-4, "shortest_wavelength": 5e-5, "lay_angle": 0.0}
+    specs = [make_spec(20_000, lay_ratio=ratio, **lay) for ratio in (60.0, 70.0, 80.0, 90.0)]
+    assert [wave_amplitudes(spec, 0)[1][0] > 0.0 for spec in specs] == [True, False, False, True]
+    gaps = np.array([0.5, 1.0, 2.0, 4.0]) * moments(specs[0])[0]
+    first, *others = (contact_pressure(spec, MODULUS, gaps) for spec in specs)
+    for other in others:
+        np.testing.assert_allclose(other, first, rtol=0.01)
 
 
 def test_lines_that_do_not_stand_for_a_gaussian_surface_are_refused(make_spec):
