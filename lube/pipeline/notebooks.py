@@ -190,8 +190,6 @@ def _failure(executed, exit_code):
         return f"its kernel was killed in cell {started[-1]}, perhaps because memory ran out"
     outputs = [(n, one) for n, cell in enumerate(cells, 1) for one in cell.get("outputs", ())]
     errors = [(n, one) for n, one in outputs if one.output_type == "error"]
-    if not errors:
-        return f"cell {started[-1]} fails without an error message"
     # The error is not always in the cell that ran last: a cell may show an error and go on.
     number, error = errors[-1]
     traceback = _COLOUR.sub("", "\n".join(error.traceback))
