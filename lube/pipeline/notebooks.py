@@ -206,12 +206,6 @@ def _tags(cell):
     return cell.metadata.get("tags", [])
 
 
-def _save(executed, path):
-    """Write an executed notebook, the same bytes each time."""
-    with written_whole(path) as part:
-        nbformat.write(_to_keep(executed), part)
-
-
 def _check_parameters(notebook, parameters):
     known = parameters_of(notebook)
     for name in parameters:
@@ -222,11 +216,12 @@ def _check_parameters(notebook, parameters):
             )
 
 
-def _to_keep(executed):
-    """Remove papermill's clock times and random cell names, and the cell with this run's paths.
+def _save(executed, path):
+    """Write an executed notebook, the same bytes each time.
 
-    Without that cell the copy, opened and run by hand, shows the study in whose folder it lies,
-    and writes nothing.
+    Papermill's clock times and random cell names are removed, and so is the cell with this run's
+    paths: without it the copy, opened and run by hand, shows the study in whose folder it lies, and
+    writes nothing.
     """
     executed.metadata.pop("papermill", None)
     executed.cells = [cell for cell in executed.cells if _INJECTED not in _tags(cell)]
@@ -234,4 +229,5 @@ def _to_keep(executed):
         cell.metadata.pop("papermill", None)
         cell.metadata.pop("execution", None)
         cell.id = f"cell-{number}"
-    return executed
+    with written_whole(path) as part:
+        nbformat.write(executed, part)
