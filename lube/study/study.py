@@ -433,15 +433,12 @@ class Study(StrictModel):
                 self.line_spec.check_follows_rolling()
             if self.has_surfaces:
                 self.check_surfaces(self.line_spec)
-            elif self.rough_surfaces is not None:
-                self._check_stands_for_surface()
+            elif self.load_sharing != "none":
+                from lube.surfaces.rare_contact import check_stands_for_surface  # loads scipy
+
+                with located(f"load_sharing: got {self.load_sharing}, need none"):
+                    check_stands_for_surface(self.line_spec)
         return self
-
-    def _check_stands_for_surface(self):
-        from lube.surfaces.rare_contact import check_stands_for_surface  # which loads scipy
-
-        with located(f"load_sharing: got {self.load_sharing}, need none"):
-            check_stands_for_surface(self.line_spec)
 
     @model_validator(mode="after")
     def _check_traces(self):
