@@ -122,10 +122,6 @@ class StudyFiles:
         """Return the path of a result, such as ``film.nc``."""
         return f"{self.folder}/{name}"
 
-    def stage_files(self, stage: str) -> dict[str, str]:
-        """Return the files that a stage reads, from each stage's name to its dataset."""
-        return {name: self.result(f"{name}.nc") for name in self.study.inputs_of(stage)}
-
     def stage_inputs(self, *stages: str) -> str:
         """Return a fingerprint of the values that a job takes from the study itself.
 
