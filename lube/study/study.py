@@ -198,11 +198,6 @@ class Study(StrictModel):
         return self.line_spec if self.has_surfaces and self.gap.is_answered else None
 
     @property
-    def has_lines(self) -> bool:
-        """Whether contact of lines is asked for."""
-        return "line" in self.contact_model
-
-    @property
     def has_surfaces(self) -> bool:
         """Whether contact of surfaces is asked for."""
         return "surface" in self.contact_model
@@ -429,7 +424,7 @@ class Study(StrictModel):
             check_sizes(self)
             for ratio in self.slips:
                 self.check_slip(ratio)
-            if self.has_lines:
+            if "line" in self.contact_model:
                 self.line_spec.check_follows_rolling()
             if self.has_surfaces:
                 self.check_surfaces(self.line_spec)
