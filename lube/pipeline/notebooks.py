@@ -74,7 +74,13 @@ def execute_notebook(
         If the file is not a notebook, has no cell tagged ``parameters``, does not know a
         parameter, a cell fails, the kernel is killed, or the copy cannot be written.
     """
-    _check_parameters(notebook, parameters)
+    known = parameters_of(notebook)
+    for name in parameters:
+        if name not in known:
+            raise LubeError(
+                f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
+                f"{', '.join(known)}"
+            )
     output = Path(output)
     failed = output.with_name(f"{output.stem}.failed.ipynb")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
@@ -204,16 +210,6 @@ def _failure(executed, exit_code):
 
 def _tags(cell):
     return cell.metadata.get("tags", [])
-
-
-def _check_parameters(notebook, parameters):
-    known = parameters_of(notebook)
-    for name in parameters:
-        if name not in known:
-            raise LubeError(
-                f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
-                f"{', '.join(known)}"
-            )
 
 
 def _save(executed, path):
