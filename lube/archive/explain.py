@@ -213,22 +213,17 @@ def in_words(explanation: Explanation) -> str:
         Several lines.
     """
     again, film = explanation.again, explanation.values["film"]
+    is_first = explanation.contact["film_formula"].item() == film["film_formulas"][0]
     return render(
         "explanation.txt",
         **vars(explanation),
         dims=CONTACT_DIMS,
         corrections=tuple(factor for key, factor in _CORRECTIONS.items() if film[key] != "none"),
         differing=explanation.differing,
-        surfaces=SURFACES // (1 if _is_first(explanation) else FEWER),
+        surfaces=SURFACES // (1 if is_first else FEWER),
         realised=[name for name in again if "realisation" in again[name].dims],
         stated=_stated,
     ).strip()
-
-
-def _is_first(explanation):
-    """Whether the film is by the study's first formula."""
-    first = explanation.values["film"]["film_formulas"][0]
-    return explanation.contact["film_formula"].item() == first
 
 
 def _stated(array):

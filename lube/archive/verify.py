@@ -47,21 +47,18 @@ def unpacked(path: File) -> Iterator[Path]:
     path = Path(path)
     if not path.exists():
         raise DataError(f"{path}: no such archive; `snakemake archive` makes it")
-    no_archive = DataError(f"{path}: not an archive: {SUMS} is missing")
-    if path.is_dir():
-        if not (path / SUMS).is_file():
-            raise no_archive
-        yield path
-        return
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
-        try:
-            shutil.unpack_archive(path, scratch, "zip")
-        except (OSError, zipfile.BadZipFile, zlib.error) as error:
-            raise DataError(f"{path}: neither a folder nor a complete zip ({error})") from None
-        # The zip may have been packed with the archive's folder or without it.
-        roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
+        folder = path
+        if not path.is_dir():
+            folder = Path(scratch)
+            try:
+                shutil.unpack_archive(path, scratch, "zip")
+            except (OSError, zipfile.BadZipFile, zlib.error) as error:
+                raise DataError(f"{path}: neither a folder nor a complete zip ({error})") from None
+        # A zip may have been packed with the archive's folder or without it.
+        roots = sorted(folder.rglob(SUMS), key=lambda sums: len(sums.parts))
         if not roots:
-            raise no_archive
+            raise DataError(f"{path}: not an archive: {SUMS} is missing")
         yield roots[0].parent
 
 

@@ -137,12 +137,15 @@ def _records(study):
     if manifest is None:
         return f"simulated, {count(study.rig.pairs, 'pair')} of rollers", []
     from lube.recordings.manifest import read_manifest
+    from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 
     content = read_manifest(manifest)
     refused = [*content.refused]
     for entry in content.entries:
         try:
-            _read(entry, study)
+            lubricant_of(entry, study)
+            for _ in unsaturated_pieces(open_entry(entry), study) if entry.file else ():
+                pass  # errors say what is wrong
         except LubeError as error:
             refused.append(str(error))
     total = len(content.refused) + len(content.entries)
@@ -150,16 +153,6 @@ def _records(study):
     if not usable:
         refused.append(f"{manifest}: no record can be used, need at least one usable record")
     return f"{usable} of the {total} in {manifest} can be used", refused
-
-
-def _read(entry, study):
-    """Check the conditions of a record and read all its samples; errors say what is wrong."""
-    from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
-
-    lubricant_of(entry, study)
-    if entry.file is not None:
-        for _ in unsaturated_pieces(open_entry(entry), study):
-            pass
 
 
 def _last_run(results):

@@ -9,6 +9,7 @@ import xarray as xr
 
 from lube.errors import DataError, shown
 from lube.schema import LIMITS
+from lube.storage.netcdf import opened
 from lube.storage.provenance import single_values
 from lube.types import File
 
@@ -84,7 +85,8 @@ def _pixels(picture):
 
 
 def _datasets(first, second, where):
-    one, other = _read(first), _read(second)
+    with opened(first) as one, opened(second) as other:
+        one, other = one.load(), other.load()
     if not set(one.data_vars) & set(other.data_vars):
         raise DataError(f"{first} and {second}: no variable in common, need datasets of one kind")
     lines = [*_only_in_one(sorted(one.variables), sorted(other.variables))]
@@ -103,14 +105,6 @@ def _datasets(first, second, where):
     if lines:
         lines += _values_of_studies(one, other)
     yield from (f"{where}: {line}" for line in lines)
-
-
-def _read(path):
-    try:
-        return xr.load_dataset(path, engine="netcdf4")
-    except (OSError, RuntimeError, ValueError, AttributeError) as error:
-        reason = (str(error) or type(error).__name__).splitlines()[0]
-        raise DataError(f"{path}: not a complete NetCDF file ({reason})") from None
 
 
 def _labels_only_in_one(here, there, dim):

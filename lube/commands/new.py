@@ -11,7 +11,7 @@ from lube.commands.run import repository
 from lube.errors import DataError, LubeError, located, shown
 from lube.pipeline.command_line import PAPER
 from lube.report.pages import render
-from lube.storage.files import why_not
+from lube.storage.files import write_text
 from lube.study.lubricant_record import is_record_path
 from lube.study.rollers import LONGEST_WAVELENGTH, SHORTEST_WAVELENGTH, grid_points
 from lube.study.schema_files import schema_line
@@ -52,7 +52,7 @@ def new_study(
     Parameters
     ----------
     path : str or Path
-        YAML file to write; its stem is the study's name.
+        YAML file to write; its stem is the study's name. Its folder is created if needed.
     quantities : dict of str to str
         Numbers with a unit, such as ``100 200 N``, for any of `OF_ROLLERS` and `OF_GRID`.
     oils : sequence of str, optional
@@ -75,6 +75,8 @@ def new_study(
     path = Path(path)
     if path.suffix not in (".yaml", ".yml"):
         raise LubeError(f"got {path}, need the name of a .yaml file")
+    if path.exists():
+        raise DataError(f"{path}: exists already, need a new name")
     folder = path.resolve().parent
     numbers = {name: _numbers(name, text) for name, text in quantities.items()}
     texts = {
@@ -132,18 +134,8 @@ def _written(path, text, records):
         texts.setdefault(records, _RECORDS)
     with ExitStack() as written:
         for file, content in texts.items():
-            _write(file, content)
+            write_text(file, content)
             written.callback(file.unlink)
         load_study(path)
         written.pop_all()
     return [*texts]
-
-
-def _write(path, text):
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise DataError(f"{path}: exists already, need a new name") from None
-    except OSError as error:
-        raise DataError(f"{path}: cannot be written: {why_not(error, path)}") from None

@@ -6,6 +6,7 @@ of several neighbouring steps the extreme value stays.
 
 import numpy as np
 import xarray as xr
+from pydantic_core import to_jsonable_python
 
 from lube.contact.ensemble import PROBABILITIES
 from lube.ehl.film_formulas import FORMULAS
@@ -248,7 +249,4 @@ def _thinned(point, part):
 
 def _plain(values):
     """Turn an array into nested lists, with None for NaN and infinity."""
-    values = np.asarray(values)
-    if values.dtype.kind == "f":
-        values = np.where(np.isfinite(values), values.astype(object), None)
-    return values.tolist()
+    return to_jsonable_python(np.asarray(values).tolist(), inf_nan_mode="null")

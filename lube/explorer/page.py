@@ -57,7 +57,7 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
     DataError
         As from `lube.pipeline.stamps.stamp`.
     """
-    content = page_content(datasets)
+    content = page_content(datasets) | {"band": band}
     start = content["traces"][0]["at"]
     controls = _controls(content["levels"], start)
     sources = {
@@ -65,40 +65,6 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
         for name, columns in COLUMNS.items()
     }
     figures = draw(content, datasets, sources)
-    return _filled(content | {"band": band}, datasets, controls, sources, figures)
-
-
-# Controls
-
-
-def _controls(levels, start):
-    """Make a control for each choice with several levels, and one for the abscissa."""
-    controls = {}
-    sheets = [InlineStyleSheet(css=(_TEMPLATES / "controls.css").read_text(encoding="utf-8"))]
-    common = {"stylesheets": sheets, "sizing_mode": "stretch_width", "margin": (4, 0, 8, 0)}
-    for name, level in levels.items():
-        names = level["names"]
-        if len(names) == 1:
-            continue
-        options = {"title": _NAMES[name], "value": names[start[name]], **common}
-        if name in ("lubricant", "film_formula", MODEL):
-            controls[name] = Select(options=names, **options)
-        else:
-            controls[name] = CategoricalSlider(categories=names, **options)
-    several = [name for name in CHOICES[2:] if name in controls]
-    if several:
-        first = several.index("temperature") if "temperature" in several else 0
-        controls["along"] = RadioButtonGroup(
-            labels=[_NAMES[name] for name in several], active=first, tags=several, **common
-        )
-    return controls
-
-
-# Page
-
-
-def _filled(content, datasets, controls, sources, figures):
-    """Fill the page's template."""
     arguments = {"controls": controls, "sources": sources, "figures": figures}
     react = CustomJS.from_file(_TEMPLATES / "explorer.mjs", **arguments)
     for name, control in controls.items():
@@ -132,6 +98,29 @@ def _filled(content, datasets, controls, sources, figures):
         bokeh=Resources(mode="inline", components=["bokeh", "bokeh-widgets"]).render(),
         stamp=stamp(list(datasets.values())),
     )
+
+
+def _controls(levels, start):
+    """Make a control for each choice with several levels, and one for the abscissa."""
+    controls = {}
+    sheets = [InlineStyleSheet(css=(_TEMPLATES / "controls.css").read_text(encoding="utf-8"))]
+    common = {"stylesheets": sheets, "sizing_mode": "stretch_width", "margin": (4, 0, 8, 0)}
+    for name, level in levels.items():
+        names = level["names"]
+        if len(names) == 1:
+            continue
+        options = {"title": _NAMES[name], "value": names[start[name]], **common}
+        if name in ("lubricant", "film_formula", MODEL):
+            controls[name] = Select(options=names, **options)
+        else:
+            controls[name] = CategoricalSlider(categories=names, **options)
+    several = [name for name in CHOICES[2:] if name in controls]
+    if several:
+        first = several.index("temperature") if "temperature" in several else 0
+        controls["along"] = RadioButtonGroup(
+            labels=[_NAMES[name] for name in several], active=first, tags=several, **common
+        )
+    return controls
 
 
 def _script(value):

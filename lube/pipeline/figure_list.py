@@ -19,7 +19,7 @@ NO_FIGURE = "no-figure"
 
 _SHOWS = {
     "gaussian-lines": lambda study: study.is_sampled,
-    "lines": lambda study: study.has_lines,
+    "lines": lambda study: "line" in study.contact_model,
     "no-lines": lambda study: not study.has("contact"),
     "surfaces": lambda study: study.has("surface_response"),
     "flat-film": lambda study: study.gap.is_plain,

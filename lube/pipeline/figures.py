@@ -11,8 +11,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-import netCDF4
-
 from lube.errors import DataError, LubeError
 from lube.pipeline.cells import datasets_of
 from lube.pipeline.notebooks import execute_notebook
@@ -20,6 +18,7 @@ from lube.pipeline.stamps import drawn_by
 from lube.pipeline.study_files import origin, products
 from lube.storage.files import write_text
 from lube.storage.git import ROOT
+from lube.storage.netcdf import opened
 from lube.storage.provenance import REMEDY, fingerprint
 from lube.types import File, Files
 
@@ -90,11 +89,8 @@ def draw_figure(notebook: File, datasets: list[str], code: list[str], results: F
 
 def _commit_of(path):
     """Commit of the code that made a dataset."""
-    try:
-        with netCDF4.Dataset(path) as dataset:
-            return dataset.code_commit
-    except (OSError, AttributeError) as error:
-        raise DataError(f"{path}: not a complete NetCDF file of lube ({error})") from None
+    with opened(path) as dataset:
+        return dataset.code_commit
 
 
 def _last_changes(results, figure):

@@ -1,43 +1,22 @@
-"""The start of every job: its log, its progress on the terminal, its errors in one line."""
+"""The start of every job: its log, and its errors in one line."""
 
 import errno
 import logging
 import os
 import signal
 import sys
-import time
 from typing import Any
 
-from lube.errors import DataError, LubeError
-from lube.storage.files import why_not
+from lube.errors import LubeError
 from lube.study.study import Study, load_study
 from lube.types import File
-
-TERMINAL_PAUSE = 5.0
-"""Least time between two progress lines of a job on the terminal, s; the log has all of them."""
-
 
 SILENT = "LUBE_SILENT_JOBS"
 """Environment variable by which the bar of a run keeps jobs from writing across it."""
 
 
-class _Occasionally(logging.Filter):
-    """Pass every warning, and a progress line if the last line is some seconds old."""
-
-    def __init__(self):
-        super().__init__()
-        self._last = time.monotonic()
-
-    def filter(self, record):
-        now = time.monotonic()
-        if record.levelno < logging.WARNING and now - self._last < TERMINAL_PAUSE:
-            return False
-        self._last = now
-        return True
-
-
 def begin_job(log_file: File) -> None:
-    """Set up the process of a job: messages go to its log and, occasionally, to the terminal.
+    """Set up the process of a job: messages go to its log, warnings also to the terminal.
 
     From here on an error that the user can correct is reported in one line, and a job that is
     terminated removes its unfinished files. Call it only in a process that runs nothing else.
@@ -46,25 +25,15 @@ def begin_job(log_file: File) -> None:
     ----------
     log_file : str or Path
         The job's log, which is overwritten.
-
-    Raises
-    ------
-    DataError
-        If the log cannot be written.
     """
     sys.excepthook = _report
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     terminal = logging.NullHandler() if SILENT in os.environ else logging.StreamHandler()
-    terminal.setLevel(logging.INFO)  # tracebacks of notebooks go to the log alone
-    terminal.addFilter(_Occasionally())
-    logging.basicConfig(level=logging.WARNING, handlers=[terminal], format="%(message)s")
-    logging.getLogger("lube").setLevel(logging.DEBUG)
-    try:
-        log = logging.FileHandler(log_file, mode="w")
-    except OSError as error:
-        raise DataError(f"{log_file}: cannot be written: {why_not(error, log_file)}") from error
+    terminal.setLevel(logging.WARNING)  # progress and tracebacks of notebooks go to the log alone
+    log = logging.FileHandler(log_file, mode="w")
     log.handleError = lambda record: None  # on a full disk the job's own error is enough
-    logging.getLogger().addHandler(log)
+    logging.basicConfig(level=logging.WARNING, handlers=[terminal, log], format="%(message)s")
+    logging.getLogger("lube").setLevel(logging.DEBUG)
 
 
 def study_of_job(snakemake: Any) -> Study:

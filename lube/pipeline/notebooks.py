@@ -74,7 +74,13 @@ def execute_notebook(
         If the file is not a notebook, has no cell tagged ``parameters``, does not know a
         parameter, a cell fails, the kernel is killed, or the copy cannot be written.
     """
-    _check_parameters(notebook, parameters)
+    known = parameters_of(notebook)
+    for name in parameters:
+        if name not in known:
+            raise LubeError(
+                f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
+                f"{', '.join(known)}"
+            )
     output = Path(output)
     failed = output.with_name(f"{output.stem}.failed.ipynb")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
@@ -190,8 +196,6 @@ def _failure(executed, exit_code):
         return f"its kernel was killed in cell {started[-1]}, perhaps because memory ran out"
     outputs = [(n, one) for n, cell in enumerate(cells, 1) for one in cell.get("outputs", ())]
     errors = [(n, one) for n, one in outputs if one.output_type == "error"]
-    if not errors:
-        return f"cell {started[-1]} fails without an error message"
     # The error is not always in the cell that ran last: a cell may show an error and go on.
     number, error = errors[-1]
     traceback = _COLOUR.sub("", "\n".join(error.traceback))
@@ -209,26 +213,11 @@ def _tags(cell):
 
 
 def _save(executed, path):
-    """Write an executed notebook, the same bytes each time."""
-    with written_whole(path) as part:
-        nbformat.write(_to_keep(executed), part)
+    """Write an executed notebook, the same bytes each time.
 
-
-def _check_parameters(notebook, parameters):
-    known = parameters_of(notebook)
-    for name in parameters:
-        if name not in known:
-            raise LubeError(
-                f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
-                f"{', '.join(known)}"
-            )
-
-
-def _to_keep(executed):
-    """Remove papermill's clock times and random cell names, and the cell with this run's paths.
-
-    Without that cell the copy, opened and run by hand, shows the study in whose folder it lies,
-    and writes nothing.
+    Papermill's clock times and random cell names are removed, and so is the cell with this run's
+    paths: without it the copy, opened and run by hand, shows the study in whose folder it lies, and
+    writes nothing.
     """
     executed.metadata.pop("papermill", None)
     executed.cells = [cell for cell in executed.cells if _INJECTED not in _tags(cell)]
@@ -236,4 +225,5 @@ def _to_keep(executed):
         cell.metadata.pop("papermill", None)
         cell.metadata.pop("execution", None)
         cell.id = f"cell-{number}"
-    return executed
+    with written_whole(path) as part:
+        nbformat.write(executed, part)

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from lube.errors import DataError, nearest, shown
+from lube.errors import DataError, right_one, shown
 from lube.pipeline.stamps import DRAWN_BY
 from lube.schema import DATASETS
 from lube.storage.git import ROOT
@@ -49,7 +49,12 @@ def results_folder(study: File | None = None, default: str = "paper") -> Path:
     for folder in (Path(study).absolute(), *(base / study for base in _bases(here))):
         if _holds_results(folder):
             return folder
-    raise DataError(_missing(str(study), here))
+    folders = [folder for base in _bases(here) for folder in sorted(base.glob("*"))]
+    there = list(dict.fromkeys(folder.name for folder in folders if _holds_results(folder)))
+    needed = "which has no results yet: run snakemake first"
+    if there:
+        needed = f"{right_one(study, there)} ({CHOSEN} chooses the study)"
+    raise DataError(f"study: got {shown(str(study))}, {needed}")
 
 
 def _bases(here):
@@ -59,14 +64,3 @@ def _bases(here):
 
 def _holds_results(folder):
     return any((folder / f"{kind}.nc").is_file() for kind in DATASETS)
-
-
-def _missing(study, here):
-    came = f"study: got {shown(study)}"
-    folders = [folder for base in _bases(here) for folder in sorted(base.glob("*"))]
-    there = list(dict.fromkeys(folder.name for folder in folders if _holds_results(folder)))
-    if near := nearest(study, there):
-        return f"{came}, did you mean {near!r}?"
-    if there:
-        return f"{came}, need a study with results: {', '.join(there)}; {CHOSEN} chooses it"
-    return f"{came}, which has no results yet: run snakemake first"

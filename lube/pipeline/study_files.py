@@ -122,10 +122,6 @@ class StudyFiles:
         """Return the path of a result, such as ``film.nc``."""
         return f"{self.folder}/{name}"
 
-    def stage_files(self, stage: str) -> dict[str, str]:
-        """Return the files that a stage reads, from each stage's name to its dataset."""
-        return {name: self.result(f"{name}.nc") for name in self.study.inputs_of(stage)}
-
     def stage_inputs(self, *stages: str) -> str:
         """Return a fingerprint of the values that a job takes from the study itself.
 
@@ -223,9 +219,12 @@ class StudyFiles:
         """
         for target in targets:
             asked = self._stages_of(target, figures)
-            for stage in asked:
-                if not self.study.has(stage):
-                    self._check_stage(target, stage)
+            of_target = [name for name, row in STAGES.items() if row.target == target]
+            if not any(map(self.study.has, of_target)):  # else it makes another file
+                for stage in asked:
+                    if lacking := self.study.lacks(stage):
+                        needed = " and ".join(_NEEDED[name] for name in lacking)
+                        raise LubeError(f"{self.path}: got the target {target}, need {needed}")
             made = {*asked}.union(*map(self.study.forerunners, asked))
             if any(
                 "uncertainty" in STAGES[stage].only_with for stage in made if self.study.has(stage)
@@ -248,14 +247,6 @@ class StudyFiles:
             if path in (row.rule, row.target, self.result(f"{name}.nc"), *self.batches_of(name))
             or name in drawn
         ]
-
-    def _check_stage(self, target, stage):
-        """Refuse a file, or a target that makes no other file."""
-        of_target = [name for name, row in STAGES.items() if row.target == target]
-        if any(self.study.has(name) for name in of_target):
-            return
-        needed = " and ".join(_NEEDED[name] for name in self.study.lacks(stage))
-        raise LubeError(f"{self.path}: got the target {target}, need {needed}")
 
     def refused_records(self) -> str | None:
         """Say in one line which records were refused, and why; None if none was.

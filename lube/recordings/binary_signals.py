@@ -20,7 +20,7 @@ from lube.recordings.signals import Channel, Signal, find_signals
 from lube.units import parse_quantity
 
 SLICE = 2**20
-"""Approximate number of samples read at a time."""
+"""Number of samples read at a time."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,7 @@ class BinarySignal:
         Yields
         ------
         list of numpy.ndarray
-            Values of each of the signals, s, V or ohm, at the next samples: about a million, but
-            never less than a chunk of the file.
+            Values of each of the signals, s, V or ohm, at the next samples, about a million.
 
         Raises
         ------
@@ -59,23 +58,13 @@ class BinarySignal:
             If the file is truncated or damaged.
         """
         with _channels(self.path, self.kind) as channels:
-            measured = channels[self.signals[-1].index].values
-            step = _slice_length(measured)
-            for first in range(0, len(measured), step):
-                part = slice(first, first + step)
+            for first in range(0, len(channels[self.signals[-1].index].values), SLICE):
+                part = slice(first, first + SLICE)
                 yield [_read(channels, part, signal) for signal in self.signals]
 
     def where(self, sample: int) -> str:
         """Position of a sample, counted from 0, in the file."""
         return f"sample {sample + 1}"
-
-
-def _slice_length(values):
-    """Length of a slice: whole chunks of a NetCDF variable, so that none is unpacked twice."""
-    chunks = values.chunking() if isinstance(values, netCDF4.Variable) else None
-    if chunks in (None, "contiguous"):
-        return SLICE
-    return max(SLICE // chunks[0], 1) * chunks[0]
 
 
 def _read(channels, part, signal):

@@ -158,7 +158,7 @@ def read_manifest(path: str | Path) -> Manifest:
     Parameters
     ----------
     path : str or Path
-        The file, with the suffix .csv, .yaml or .yml.
+        The file; YAML if its suffix is .yaml or .yml, else CSV.
 
     Returns
     -------
@@ -171,12 +171,7 @@ def read_manifest(path: str | Path) -> Manifest:
         If the file cannot be read, its line of column names cannot be used, or it is not a list.
     """
     path = Path(path)
-    if path.suffix.lower() in (".yaml", ".yml"):
-        rows = _yaml_rows(path)
-    elif path.suffix.lower() == ".csv":
-        rows = _csv_rows(path)
-    else:
-        raise DataError(f"{path}: got the suffix {path.suffix!r}, need .csv, .yaml or .yml")
+    rows = _yaml_rows(path) if path.suffix.lower() in (".yaml", ".yml") else _csv_rows(path)
     entries, refused = [], []
     for where, content in rows:
         try:

@@ -17,11 +17,6 @@ from lube.recordings.csv_signals import TextSignal, open_text
 from lube.study.field_types import bounded
 from lube.units import parse_electrical, parse_number
 
-_KIND_OF_SUFFIX = (
-    dict.fromkeys((".csv", ".tsv", ".txt"), "text")
-    | dict.fromkeys((".nc", ".nc4"), "NetCDF")
-    | {".tdms": "TDMS"}
-)
 _KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
 
 _FIRST_STEPS = 1000  # time steps whose median is the sampling interval
@@ -114,7 +109,7 @@ def open_recording(
     Parameters
     ----------
     path : str or Path
-        CSV file (.csv, .tsv, .txt), NetCDF file (.nc, .nc4) or TDMS file (.tdms).
+        CSV, NetCDF or TDMS file; its content says which.
     sampling_interval : float, optional
         Time between samples, s, for a file that does not state it.
     channel : str, optional
@@ -137,11 +132,10 @@ def open_recording(
     Raises
     ------
     DataError
-        If the file is missing, not of the kind its suffix says, empty or damaged; if it has no
-        voltage or resistance, or not exactly one channel of the given name; if a unit is missing,
-        unknown or contradicts the channel's name; if the gain is 0 or the offset is not of the
-        recording's quantity; if the sampling interval is unknown, not positive, or not the one in
-        the file.
+        If the file is missing, of none of these kinds, empty or damaged; if it has no voltage or
+        resistance, or not exactly one channel of the given name; if a unit is missing, unknown or
+        contradicts the channel's name; if the gain is 0 or the offset is not of the recording's
+        quantity; if the sampling interval is unknown, not positive, or not the one in the file.
     """
     path = Path(path)
     kind = _kind(path)
@@ -162,12 +156,7 @@ def open_recording(
 
 
 def _kind(path):
-    """Kind of a file by its suffix, if its first bytes agree."""
-    claimed = _KIND_OF_SUFFIX.get(path.suffix.lower())
-    if claimed is None:
-        raise DataError(
-            f"{path}: got the suffix {path.suffix!r}, need one of {', '.join(_KIND_OF_SUFFIX)}"
-        )
+    """Kind of a file by its first bytes, whatever its suffix."""
     try:
         with open(path, "rb") as file:
             first = file.read(4096)
@@ -175,11 +164,12 @@ def _kind(path):
         raise DataError(f"{path}: cannot be read: {error.strerror}") from None
     if not first:
         raise DataError(f"{path}: empty recording, the file has no bytes")
-    kinds = (kind for mark, kind in _KIND_OF_MARK.items() if first.startswith(mark))
-    found = next(kinds, "unknown binary data" if b"\0" in first else "text")
-    if found != claimed:
-        raise DataError(f"{path}: the suffix says {claimed}, the content is {found}; need the same")
-    return claimed
+    for mark, kind in _KIND_OF_MARK.items():
+        if first.startswith(mark):
+            return kind
+    if b"\0" in first:
+        raise DataError(f"{path}: got unknown binary data, need a CSV, NetCDF or TDMS file")
+    return "text"
 
 
 def _before_amplifier(path, measured, gain, offset):

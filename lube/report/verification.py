@@ -35,11 +35,7 @@ def _row(one):
     unit = one["check_unit"].item()
     is_judged = one["check_allowed"].notnull().item()
     texts = (one[f"check_{name}"].item() for name in ("subject", "against"))
-    deviation, allowed = (_with_unit(one[name].item(), unit) for name in _NUMBERS)
+    deviation, allowed = (f"{one[name].item():.2g} {unit}" for name in _NUMBERS)
     failed = " (**differs**)" if one["check_outcome"].item() == "differs" else ""
     number, source = f"{one['check'].item()}", one["check_source"].item()
     return number, *texts, deviation + failed, allowed if is_judged else "", source
-
-
-def _with_unit(value, unit):
-    return f"{value:.2g} {unit}" if value else f"0 {unit}"

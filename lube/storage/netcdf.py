@@ -4,7 +4,9 @@ Files carry the values they were computed from, and no clock time: the same stud
 bytes.
 """
 
+import contextlib
 import logging
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -55,6 +57,35 @@ def save(dataset: xr.Dataset, path: File, kind: str, study: "Study", inputs: Fil
     log.debug("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
 
 
+@contextlib.contextmanager
+def opened(path: File) -> Iterator[xr.Dataset]:
+    """Open a NetCDF file; an error of the libraries becomes one line.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to read.
+
+    Yields
+    ------
+    xarray.Dataset
+        Its data, not yet in memory.
+
+    Raises
+    ------
+    DataError
+        If the file is truncated, damaged or of another kind.
+    """
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            yield dataset
+    except (OSError, RuntimeError, ValueError, AttributeError) as error:
+        reason = (str(error) or type(error).__name__).splitlines()[0]
+        raise DataError(
+            f"{path}: not a complete NetCDF file, truncated, damaged or of another kind ({reason})"
+        ) from error
+
+
 def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
     """Load a dataset into memory after checking it against the schema of its kind.
 
@@ -83,17 +114,11 @@ def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
         raise DataError(f"kind: got {shown(kind)}, {right_one(f'{kind}', FILES)}")
     if not path.is_file():
         raise DataError(f"{path}: no such file, need a {kind} dataset")
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            check(dataset, kind, path)
-            if study is not None:
-                check_config(dataset, study, kind, path)
-            return dataset.load()
-    except (OSError, RuntimeError, ValueError, AttributeError) as error:
-        reason = (str(error) or type(error).__name__).splitlines()[0]
-        raise DataError(
-            f"{path}: not a complete NetCDF file, truncated, damaged or of another kind ({reason})"
-        ) from error
+    with opened(path) as dataset:
+        check(dataset, kind, path)
+        if study is not None:
+            check_config(dataset, study, kind, path)
+        return dataset.load()
 
 
 def _encoding(dataset):

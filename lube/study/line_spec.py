@@ -249,7 +249,7 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
     width = 2.0 * float(rollers.contact_half_width(largest_force))
     lines = tuple(
-        _rough_line(rollers, roughness, name, rms, (spacing, width))
+        _rough_line(rollers, roughness, name, rms, spacing, width)
         for name, rms in zip(ROLLERS, rollers.rms_heights, strict=True)
     )
     return LineSpec(lines=lines, spacing=spacing, height_step=roughness.height_step)
@@ -287,9 +287,8 @@ def band_in_words(rollers: RollerPair, roughness: Roughness, spec: LineSpec) -> 
     return bands[0] if bands[0] == bands[1] else f"first: {bands[0]}; second: {bands[1]}"
 
 
-def _rough_line(rollers, roughness, name, rms, lengths):
+def _rough_line(rollers, roughness, name, rms, spacing, width):
     """Line of one roller, at a grid spacing and the largest contact width."""
-    spacing, width = lengths
     roller = getattr(rollers, name)
     own, key = roughness.of(roller.roughness), functools.partial(_key, name, roller.roughness)
     with located(key("shortest_wavelength")):

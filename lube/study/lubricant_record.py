@@ -236,8 +236,9 @@ class LubricantRecord(StrictModel):
         if self.temperature_range is not None:
             return self.temperature_range.lowest, self.temperature_range.highest
         if self.viscosity.points is not None:
-            known = [[point.temperature for point in self._ambient]]
-            known += [temperatures] if (temperatures := self._coefficients_at) else []
+            ambient = [point.temperature for point in self._ambient]
+            measured = [point.temperature for point in self.pressure_viscosity.points or ()]
+            known = list(filter(None, [ambient, measured, [*self.isotherms]]))
             return max(map(min, known)), min(map(max, known))
         lowest, highest = liquid_range(self.viscosity.coolprop_fluid)
         return lowest - ZERO_CELSIUS, highest - ZERO_CELSIUS
@@ -245,12 +246,6 @@ class LubricantRecord(StrictModel):
     @property
     def _ambient(self):
         return [point for point in self.viscosity.points if not point.is_under_pressure]
-
-    @property
-    def _coefficients_at(self):
-        """Temperatures at which the pressure-viscosity coefficient was measured, if it was."""
-        points = self.pressure_viscosity.points
-        return [point.temperature for point in points] if points else list(self.isotherms)
 
     def density_at(self, kelvin: Values) -> Values:
         """Density, kg/m3, at a temperature in K."""

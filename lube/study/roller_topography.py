@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import PrivateAttr, ValidationInfo, model_validator
+from pydantic_core import to_jsonable_python
 
 from lube.errors import DataError, located
 from lube.study.field_types import Length, StrictModel, Text
@@ -68,9 +69,7 @@ class RollerTopography(StrictModel):
     @property
     def reading(self) -> dict[str, Any]:
         """The measured spectrum as plain data, so that jobs need not read the file again."""
-        from lube.study import topography_lines
-
-        return topography_lines.plain(self._measured)
+        return to_jsonable_python(self._measured, fallback=lambda array: array.tolist())
 
     @property
     def content(self) -> dict[str, Any]:

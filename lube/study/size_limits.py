@@ -34,13 +34,6 @@ def check_sizes(study: "Study") -> None:
     StudyError
         Which key, the size it leads to, the largest size allowed.
     """
-    for key, number, what, most in _sizes(study):
-        if number > most:
-            raise StudyError(f"{key}: {number:.6g} {what}, need {most:.6g} at most")
-
-
-def _sizes(study):
-    """For each size: the key that decides it, the number, what it counts, and its limit."""
     rig, grid, points = study.rig, study.operating_grid, study.line_spec.points
     pair = 2 * max(points)
     levels = (grid.force, grid.speed, grid.temperature, study.slips, study.lubricants)
@@ -50,7 +43,7 @@ def _sizes(study):
     batch = min(study.batch_size, study.realisations)
     combinations = tables * len(study.film_formulas) * study.realisations
     rig_key = "rig.revolutions" if rig.drift > 0.0 else "rig.pairs"
-    return [
+    sizes = [  # key that decides it, number, what it counts, limit
         ("rollers.second.radius", points[1], "points around the roller", MOST_POINTS),
         ("batch_size", len(study.batches), "batches", MOST_BATCHES),
         ("kept_realisations", pair * len(study.kept_realisations), "heights", MOST_NUMBERS),
@@ -60,3 +53,6 @@ def _sizes(study):
         ("operating_grid", combinations, "combinations in all realisations", MOST_NUMBERS),
         ("rig.pairs", tables * rig.pairs * FOLDED_NUMBERS, "folded samples", MOST_NUMBERS),
     ]
+    for key, number, what, most in sizes:
+        if number > most:
+            raise StudyError(f"{key}: {number:.6g} {what}, need {most:.6g} at most")

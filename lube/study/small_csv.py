@@ -84,6 +84,5 @@ def split_cells(line: str, delimiter: str) -> list[str]:
     ['40', 'n-dodecane']
     """
     # A carriage return inside a line would end it.
-    inside = line.rstrip("\r\n").replace("\r", " ")
-    cells = next(csv.reader([inside], delimiter=delimiter, skipinitialspace=True), [])
+    cells = next(csv.reader([line.replace("\r", " ")], delimiter=delimiter, skipinitialspace=True))
     return [cell.strip() for cell in cells]

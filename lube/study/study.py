@@ -198,11 +198,6 @@ class Study(StrictModel):
         return self.line_spec if self.has_surfaces and self.gap.is_answered else None
 
     @property
-    def has_lines(self) -> bool:
-        """Whether contact of lines is asked for."""
-        return "line" in self.contact_model
-
-    @property
     def has_surfaces(self) -> bool:
         """Whether contact of surfaces is asked for."""
         return "surface" in self.contact_model
@@ -429,19 +424,16 @@ class Study(StrictModel):
             check_sizes(self)
             for ratio in self.slips:
                 self.check_slip(ratio)
-            if self.has_lines:
+            if "line" in self.contact_model:
                 self.line_spec.check_follows_rolling()
             if self.has_surfaces:
                 self.check_surfaces(self.line_spec)
-            elif self.rough_surfaces is not None:
-                self._check_stands_for_surface()
+            elif self.load_sharing != "none":
+                from lube.surfaces.rare_contact import check_stands_for_surface  # loads scipy
+
+                with located(f"load_sharing: got {self.load_sharing}, need none"):
+                    check_stands_for_surface(self.line_spec)
         return self
-
-    def _check_stands_for_surface(self):
-        from lube.surfaces.rare_contact import check_stands_for_surface  # which loads scipy
-
-        with located(f"load_sharing: got {self.load_sharing}, need none"):
-            check_stands_for_surface(self.line_spec)
 
     @model_validator(mode="after")
     def _check_traces(self):

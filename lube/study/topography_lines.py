@@ -3,7 +3,6 @@
 import dataclasses
 import functools
 import os
-from typing import Any
 
 import numpy as np
 
@@ -50,7 +49,7 @@ def measured(settings: RollerTopography, known: dict | None) -> LineSpectrum | T
     settings : RollerTopography
         From the study.
     known : dict or None
-        From `plain`, if the spectrum was read before.
+        From `RollerTopography.reading`, if the spectrum was read before.
 
     Returns
     -------
@@ -74,12 +73,6 @@ def _read(file, preparation, is_line, _time):
     """Read a topography once for both rollers, and again when the file has changed."""
     surface = prepare(read_topography(file), preparation)
     return surface if is_line else line_spectrum(surface, preparation)
-
-
-def plain(spectrum: LineSpectrum) -> dict[str, Any]:
-    """Write a spectrum as plain data."""
-    fields = dataclasses.asdict(spectrum).items()
-    return {name: value.tolist() if hasattr(value, "tolist") else value for name, value in fields}
 
 
 def table(

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Generic, Literal, TypeVar, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator
 
 from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, shown
@@ -146,10 +146,7 @@ class Choice(StrictModel, Generic[Name]):
         """The choices in words."""
         return ", ".join(self.choices)
 
-    @model_validator(mode="after")
-    def _check_once(self):
-        each_once(self.choices)
-        return self
+    _each_once = field_validator("choices")(each_once)
 
 
 class OfDefinition(Choice[Literal[tuple(DEFINITIONS)]]):

@@ -70,7 +70,7 @@ def test_it_has_the_numbers_of_the_rollers_of_a_notebook_to_the_last_bit(new):
 
 
 def test_with_all_options_each_value_arrives_in_its_place(new, tmp_path):
-    (tmp_path / "studies").mkdir()
+    (tmp_path / "rig").touch()
     code, said = new(
         *("studies/mine.yaml", "--radius", "50", "30", "mm", "--roughness", "0.3 um"),
         *("--force", "400", "800", "N", "--speed", "1.5,", "2", "Hz"),
@@ -79,7 +79,7 @@ def test_with_all_options_each_value_arrives_in_its_place(new, tmp_path):
     )
     assert code == 2 and "rig/records.csv: cannot be written" in said
     assert not list(tmp_path.glob("**/*.*"))
-    (tmp_path / "rig").mkdir()
+    (tmp_path / "rig").unlink()
     arguments = "studies/mine.yaml --radius 50 30 mm --roughness 0.3 um --force 400 800 N --speed"
     arguments += " 1.5, 2 Hz --temperature 320 340 K --oil n-dodecane --realisations 8 --records"
     code, said = new(*arguments.split(), "rig/records.csv")

@@ -1,15 +1,11 @@
-"""What a job does first: its log, its progress on the terminal, its errors in one line."""
+"""What a job does first: its log, and its errors in one line."""
 
-import logging
 import signal
 import subprocess
 import sys
 import textwrap
-import time
 
 import pytest
-
-from lube.pipeline.jobs import TERMINAL_PAUSE, _Occasionally
 
 BEGIN = """\
 import logging, sys
@@ -38,14 +34,16 @@ def run(tmp_path):
     return run_job
 
 
-def test_progress_goes_to_a_new_log_and_not_at_once_to_the_terminal(run):
+def test_progress_goes_to_a_new_log_and_warnings_also_to_the_terminal(run):
     run("log.info('an earlier run')", exit_code=0)
     code = """
         logging.getLogger('matplotlib').info('of another package')
         log.debug('a traceback')
         log.info('realisation 0: done')
+        log.warning('strange')
     """
-    assert run(code, exit_code=0) == ("", "a traceback\nrealisation 0: done\n")
+    lines = "a traceback\nrealisation 0: done\nstrange\n"
+    assert run(code, exit_code=0) == ("strange\n", lines)
 
 
 def test_an_error_that_a_user_can_correct_is_one_line_in_log_and_terminal(run):
@@ -61,32 +59,6 @@ def test_an_error_of_the_code_comes_with_its_traceback(run):
     for text in run("raise ZeroDivisionError('by nought')"):
         assert text.startswith("Error in the study's own code\nTraceback")
         assert "ZeroDivisionError: by nought" in text
-
-
-def test_the_terminal_shows_progress_occasionally_and_every_warning(monkeypatch):
-    clock = [100.0]
-    monkeypatch.setattr(time, "monotonic", lambda: clock[0])
-    occasionally = _Occasionally()
-
-    def passes(level, after):
-        clock[0] += after
-        return occasionally.filter(logging.LogRecord("lube", level, "", 0, "", (), None))
-
-    assert not passes(logging.INFO, after=0.9 * TERMINAL_PAUSE)
-    assert passes(logging.INFO, after=0.2 * TERMINAL_PAUSE)
-    assert not passes(logging.INFO, after=0.5 * TERMINAL_PAUSE)
-    assert passes(logging.WARNING, after=0.0)
-    assert passes(logging.INFO, after=1.1 * TERMINAL_PAUSE)
-
-
-def test_a_log_that_cannot_be_written_is_reported_in_one_line(tmp_path):
-    (tmp_path / "logs").write_text("no folder")
-    log = tmp_path / "logs" / "job.log"
-    command = [sys.executable, "-c", BEGIN, log]
-    finished = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert finished.returncode != 0
-    assert finished.stderr.startswith(f"Error: {log}: cannot be written: ")
-    assert finished.stderr.count("\n") == 1
 
 
 def test_a_log_on_a_full_disk_adds_nothing_to_the_jobs_error():

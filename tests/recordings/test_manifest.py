@@ -211,7 +211,7 @@ FILES = [
     ("m.yaml", b"- {a: 1, a: 2}", "duplicate key"),
     ("m.yaml", b"- {a: 1", "not valid YAML"),
     ("m.csv", "probability,Öl".encode("latin-1"), "it is not UTF-8 text"),
-    ("m.xls", b"", "got the suffix '.xls', need .csv, .yaml or .yml"),
+    ("m.xls", b"", "empty, need a line of column names"),
 ]
 
 

@@ -197,9 +197,9 @@ def test_slices_of_binary_files_join_without_a_seam(tmp_path, monkeypatch):
     monkeypatch.setattr("lube.recordings.binary_signals.SLICE", 999)
     netcdf = write_netcdf(tmp_path / "r.nc", COUNTS, scale_factor=STEP)
     tdms = write_tdms(tmp_path / "r.tdms", VOLTS, wf_increment=INTERVAL, unit_string="V")
-    for path, piece in ((netcdf, 700), (tdms, 999)):
+    for path in (netcdf, tdms):
         pieces = list(open_recording(path).pieces())
-        assert {part.size for part in pieces[:-1]} == {piece}
+        assert {part.size for part in pieces[:-1]} == {999}
         np.testing.assert_allclose(np.concatenate(pieces), VOLTS, atol=1e-12)
 
 

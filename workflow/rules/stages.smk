@@ -8,7 +8,7 @@ for stage in STAGES.values():
             name:
                 stage.rule
             input:
-                **FILES.stage_files(stage.name),
+                **{kind: result(f"{kind}.nc") for kind in STUDY.inputs_of(stage.name)},
                 batches=FILES.batches_of(stage.name),
                 written=FILES.written_files(stage.name),
                 # Their values are parameters. A title is not a parameter, so a new one makes nothing again.
