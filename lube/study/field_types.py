@@ -4,8 +4,11 @@ All three kinds of file become frozen pydantic models. Here are their strict bas
 of fields that are written with a unit and kept in SI, and the one-line message on a refused value.
 """
 
+import ast
+import inspect
 import operator
 import re
+import textwrap
 from collections import Counter
 from collections.abc import Callable, Iterable
 from itertools import pairwise
@@ -18,12 +21,34 @@ from lube.types import File
 from lube.units import parse_number, parse_quantity
 
 
-class StrictModel(BaseModel, extra="forbid", frozen=True, use_attribute_docstrings=True):
+class StrictModel(BaseModel, extra="forbid", frozen=True):
     """Frozen model that refuses unknown keys; the text under a field describes it."""
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema, handler):
+        """Describe the fields: pydantic would read their texts at every start, which is slow."""
+        schema = handler(core_schema)
+        found, texts = handler.resolve_ref_schema(schema), _texts(cls)
+        for name, field in cls.model_fields.items():
+            if name in texts:
+                found["properties"][field.alias or name]["description"] = texts[name]
+        return schema
 
     def given_keys(self, keys: Iterable[str]) -> list[str]:
         """Return the keys, among some of the model, that have a value."""
         return [key for key in keys if getattr(self, key) is not None]
+
+
+def _texts(model):
+    """Text under each field in the source of a model and of those that it is based on."""
+    found = {}
+    for base in reversed(model.__mro__):
+        if issubclass(base, StrictModel) and not base.__pydantic_generic_metadata__["origin"]:
+            (source,) = ast.parse(textwrap.dedent(inspect.getsource(base))).body
+            for field, text in pairwise(source.body):
+                if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):
+                    found[field.target.id] = inspect.cleandoc(text.value.value)
+    return found
 
 
 _LIMITS = {
