@@ -116,18 +116,26 @@ class StripFilm:
         PassingContacts
             At `COLUMNS` columns.
         """
-        spacing = self.width / COLUMNS
         speeds = np.ones((2, 4))
         speeds[:, 3] = surface_speeds(1.0, slide_to_roll_ratio)
-        both = height_moments(spec) + self._by_oil(spec, self._columns(spacing))
-        moments = np.einsum("rcij,ri,rj->cij", both, speeds, speeds)
-        square, changes = moments[:, 0, 0], moments[:, 1:, 1:]
+        moments = np.einsum("rcij,ri,rj->cij", self._moments(spec), speeds, speeds)
+        square, along = moments[:, :1, :1], moments[:, 0, 1:]
         # The rms height changes along the strip, too.
-        along = moments[:, 0, 1:]
-        changes = changes - along[:, :, None] * along[:, None] / square[:, None, None]
-        level, changes = self.films(spacing) / np.sqrt(square), changes / square[:, None, None]
+        changes = (moments[:, 1:, 1:] - along[:, :, None] * along[:, None] / square) / square
+        level, spacing = self.levels(spec), self.width / COLUMNS
         level = level - max(level.min() - HIGHEST, 0.0)
         return passing_contacts(level, changes, length, spacing, self.has_edges)
+
+    def levels(self, spec: LineSpecLike) -> Array:
+        """Film over the rms height in the gap, at `COLUMNS` columns.
+
+        Parameters
+        ----------
+        spec : LineSpecLike
+            As in `contacts`.
+        """
+        square = self._moments(spec)[..., 0, 0].sum(axis=0)
+        return self.films(self.width / COLUMNS) / np.sqrt(square)
 
     def expected(self, spec: LineSpecLike, length: float, sharp: float) -> Pair:
         """Find the numbers of contacts, and of breakthroughs, that theory expects in the strip.
@@ -186,13 +194,13 @@ class StripFilm:
         shared = [np.minimum(density[lag:], density[: density.size - lag]).sum() for lag in lags]
         return number / whole * lags, np.array(shared) / whole
 
-    def _by_oil(self, spec, position):
-        """Find what the oil adds to `height_moments`, at some columns."""
+    def _moments(self, spec):
+        """Compute the `height_moments` in the gap, at `COLUMNS` columns."""
         if not self.answers:
-            return 0.0
-        each = enumerate(self.answers)
-        found = [moments_by_oil(surface_waves(spec, one), answer, position) for one, answer in each]
-        return np.stack(found)
+            return height_moments(spec)
+        position, each = self._columns(self.width / COLUMNS), enumerate(self.answers)
+        added = [moments_by_oil(surface_waves(spec, one), answer, position) for one, answer in each]
+        return height_moments(spec) + np.stack(added)
 
     def _columns(self, spacing):
         return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)

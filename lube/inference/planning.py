@@ -144,7 +144,7 @@ def on_surfaces(
     share = contact["breakthrough_probability"].values.ravel()
     size = revolution_size(spec, contact).ravel()
     records = np.repeat(np.array(turns)[:, None], share.size, axis=1)
-    motion = np.full(share.size, slide_to_roll_ratio), records, gap.film_shape, drift
+    motion = np.full(share.size, slide_to_roll_ratio), records, gap, drift
     ratios = surface_scatter(spec, length, film, share, *motion)
     tells = np.any([np.isfinite(relative_error(share, size, one)) for one in ratios], axis=0)
     touch = contact["geometric_contact_probability"].values.ravel()

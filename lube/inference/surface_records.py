@@ -80,18 +80,20 @@ def surfaces_at_records(
     if study.gap.is_answered:  # the responses of the film are over other wavelengths
         parts = [(here, grid.isel(record=row_of[here])), (~here, others)]
     thickness = xr.DataArray(ratios, dims="curve_film") * first["composite_rms_roughness"].item()
-    for records, some in parts:
+    slips, turns = (experiment[name].values for name in (_SLIP, "turns"))
+    rollers, scatter = (study.line_spec, study.rollers.length), np.empty(row_of.size)
+    for records, some in (part for part in parts if part[0].any()):
+        motion = slips[records], turns[records], study.gap, study.rig.drift
+        scatter[records] = surface_scatter(*rollers, some, own[0, records], *motion)
         some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
         curves[..., records] = _sampled(study, some, threads, FEWER)
-    motion = (experiment[name].values for name in (_SLIP, "turns"))
-    given = study.line_spec, study.rollers.length, first, own[0], *motion
     by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
     found = {
         "film_formula": films["film_formula"].values,
         "curve_lambda_ratio": ratios,
         **values_with_limits("breakthrough_probability", by_formula[:3]),
         "sample_size": by_formula[3],
-        "scatter_ratio": surface_scatter(*given, study.film_shape, study.rig.drift),
+        "scatter_ratio": scatter,
         **values_with_limits("curve_probability", curves[:3]),
         "curve_sample_size": curves[3],
     }

@@ -4,20 +4,18 @@ As for lines (`lube.inference.record_scatter`) it depends on how long a record i
 the rollers' sizes. Its parts follow from the theory of `lube.contact.pair_scatter`.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
 from lube.contact.pair_scatter import RecurringContacts, persistent_part
-from lube.contact.strip_film import COLUMNS, surface_moments
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.statistics.one_pair import prediction_limits, scatter_ratio
 from lube.surfaces.synthetic import LineSpecLike
-from lube.types import Array, FilmShape, Pair, Values
+from lube.types import Array, Pair, Values
 
 
 def revolution_size(spec: LineSpecLike, contact: xr.Dataset) -> Array:
@@ -70,7 +68,7 @@ def surface_scatter(
     shares: Array,
     slips: Array,
     turns: Array,
-    film_shape: FilmShape,
+    gap: Gap,
     drift: float,
 ) -> Array:
     """Find how far the share of each record scatters between pairs of surfaces.
@@ -80,15 +78,15 @@ def surface_scatter(
     spec, length
         As in `lube.contact.surface_strip.surface_contact`.
     films : xarray.Dataset
-        Films at the records by one film formula.
+        Films at the records by one film formula, with their responses if the oil answers.
     shares : numpy.ndarray, shape (record,)
         Probability of breakthrough at the records.
     slips : numpy.ndarray, shape (record,)
         Slide-to-roll ratios.
     turns : numpy.ndarray, shape (..., record)
         Revolutions of the records, of one or of several durations.
-    film_shape : str
-        As in a study.
+    gap : Gap
+        As in `lube.contact.surface_strip.surface_contact`.
     drift : float
         As in `lube.statistics.one_pair.drift_factor`.
 
@@ -96,18 +94,16 @@ def surface_scatter(
     -------
     numpy.ndarray
         Of the shape of `turns`: variance of the record's share over that of one revolution of pure
-        rolling of equal rollers; NaN where the film is not known. What the oil does to the surfaces
-        has no effect on it.
+        rolling of equal rollers; NaN where the film is not known.
     """
     reach, recurring = spec.longest_wavelength / spec.spacing, RecurringContacts(spec)
-    rms = math.sqrt(surface_moments(spec).height)
-    strips = strip_films(spec, films, Gap(film_shape))  # of surfaces as drawn
+    strips = strip_films(spec, films, gap)
     durations = turns.reshape(-1, shares.size).T.tolist()
 
     def of_record(slip, turns, share, strip):
         if strip is None or np.isnan(share):
             return [np.nan] * len(turns)
-        thinnest = strip.films(strip.width / COLUMNS).min() / rms
+        thinnest = strip.levels(spec).min()
         part = persistent_part(share, *strip.common(spec, length), recurring.at(thinnest))
         # With slip contacts pass in a shorter time.
         passages = [strip.passage_width(spec, length, each) for each in (slip, 0.0)]

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from experiments import experiment_of
+from whole_surfaces import answered_strip
 
+from lube.grid.gap import PLAIN, Gap
 from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_scatter import surface_scatter
 
-SHARES = np.array([0.05, 0.4, 0.4])
+SHARES, ANSWERED = np.array([0.05, 0.4, 0.4]), Gap("flat", "computed")
 
 
 def scatter(study, **records):
@@ -20,7 +22,7 @@ def scatter(study, **records):
 def of_records(study, experiment, films, shares):
     motion = (experiment[name].values for name in ("slide_to_roll_ratio", "turns"))
     given = study.line_spec, study.rollers.length, films, shares, *motion
-    return surface_scatter(*given, study.film_shape, study.rig.drift)
+    return surface_scatter(*given, study.gap, study.rig.drift)
 
 
 def with_rollers(study, **second):
@@ -70,3 +72,11 @@ def test_a_film_that_is_not_known_has_no_scatter(busy_study):
 def test_films_with_a_shape_have_a_scatter_too(busy_study, film_shape):
     study = busy_study.model_copy(update={"film_shape": film_shape})
     assert np.all(scatter(study, turns=100.0, slide_to_roll_ratio=0.37) < 0.6)
+
+
+def test_contacts_that_the_oil_ends_are_hardly_shorter_with_slip(study, make_spec):
+    spec = make_spec(50_000, longest_wavelength=4e-4, shortest_wavelength="16 points")
+    _, film = answered_strip(study, spec, "flat", 0.5, 2.2)
+    record = film.expand_dims("record"), np.array([0.3]), np.array([0.5]), np.array([1.0])
+    drawn, answered = (surface_scatter(spec, 0.01, *record, gap, 0.0) for gap in (PLAIN, ANSWERED))
+    assert drawn < 0.5 < 0.7 < answered < 1.0
