@@ -100,7 +100,7 @@ class Deviating:
         with located(named):
             check_uncertainty(study)
         levels, uncertain = study.operating_grid.temperature, study.uncertainty.temperature
-        lower, upper = uncertain.range if uncertain else (0.0, 0.0)
+        lower, upper = uncertain.ends if uncertain else (0.0, 0.0)
         ranges = [record.valid_temperatures for record in study.lubricants]
         coldest = max(min(levels) + lower, *(one[0] for one in ranges))
         hottest = min(max(levels) + upper, *(one[1] for one in ranges))
@@ -269,7 +269,7 @@ def _heights(study):
     if not any(given.values()):
         return None
     ends = (
-        uncertain.range if uncertain else (GAUSSIAN[name], GAUSSIAN[name] + 1e-6)
+        uncertain.ends if uncertain else (GAUSSIAN[name], GAUSSIAN[name] + 1e-6)
         for name, uncertain in given.items()
     )
     return equivalent_ratio(*ends, study.line_spec.rms_height)

@@ -42,7 +42,8 @@ def equivalent_ratio(
     Returns
     -------
     callable
-        Equivalent ratios from lambda ratios, skewness and kurtosis, arrays of the same shape.
+        Equivalent ratios from lambda ratios, skewness and kurtosis, arrays of the same shape; NaN
+        where the lambda ratio is.
     """
     axes = [np.linspace(*ends, LEVELS) for ends in (skewness, kurtosis)]
     parts = np.array(rms_height) / np.hypot(*rms_height)
@@ -50,7 +51,7 @@ def equivalent_ratio(
     table = RegularGridInterpolator((*axes, RATIOS), values)
 
     def equivalent(ratio, skewness, kurtosis):
-        inside = np.clip(ratio, RATIOS[0], RATIOS[-1])
+        inside = np.clip(np.nan_to_num(ratio), RATIOS[0], RATIOS[-1])
         return ratio * table(np.stack([skewness, kurtosis, inside], axis=-1))
 
     return equivalent

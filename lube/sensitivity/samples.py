@@ -7,11 +7,9 @@ import scipy.special
 import xarray as xr
 from scipy.stats import qmc
 
-from lube.study.uncertainty import Factor
+from lube.study.uncertainty import FARTHEST, Factor
 from lube.types import Array
 
-FARTHEST = 1.5
-"""Normal deviations are cut off at this many half-ranges."""
 SEED = "seed"
 """Name of the factor that stands for the random numbers of the lines."""
 

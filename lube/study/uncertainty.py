@@ -13,7 +13,7 @@ from typing import Annotated, ClassVar, Generic, Literal, TypeVar, get_args
 from pydantic import Field, field_validator
 
 from lube.ehl.film_formulas import FORMULAS, formula
-from lube.errors import LubeError, StudyError, shown
+from lube.errors import LubeError, StudyError, located, shown
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.physics.pressure_viscosity import DEFINITIONS
 from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
@@ -24,6 +24,8 @@ from lube.units import parse_number, parse_quantity, with_unit
 
 BEYOND = 5.0
 """Kelvin by which deviating temperatures may leave the range of an oil's data."""
+FARTHEST = 1.5
+"""Normal deviations are cut off at this many half-ranges."""
 SAMPLE_BATCHES = 8
 """Jobs among which the samples of a study are shared: those that are done are not lost."""
 
@@ -59,6 +61,7 @@ class _Uncertain(StrictModel):
 
     _UNITS: ClassVar[str] = ""
     _SCALE: ClassVar[float] = 1.0
+    _LIMITS: ClassVar[dict[str, float]] = {}
 
     distribution: Literal["uniform", "normal"] = "uniform"
     """uniform over the range, or normal, with 95 % of it in the range, cut off at 1.5 times the
@@ -73,6 +76,22 @@ class _Uncertain(StrictModel):
         lower, upper = (f"{self._SCALE * end:g}{self._UNITS}" for end in self.range)
         return f"{lower} to {upper}"
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the greatest value that occur, those of the range if it is uniform."""
+        lower, upper = self.range
+        if self.distribution == "uniform":
+            return lower, upper
+        middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+        return middle - half * FARTHEST, middle + half * FARTHEST
+
+    @model_validator(mode="after")
+    def _check_ends(self):
+        with located("distribution: normal", ValueError):
+            for end in self.ends:
+                bounded(self._SCALE * end, self._UNITS.strip(), **self._LIMITS)
+        return self
+
     def within(self, part: float) -> str:
         """Half of the range, reduced to a part of it, in words, such as ``+- 1 %``."""
         lower, upper = self.range
@@ -85,6 +104,7 @@ class Relative(_Uncertain):
 
     _UNITS: ClassVar[str] = " %"
     _SCALE: ClassVar[float] = 100.0
+    _LIMITS: ClassVar[dict[str, float]] = {"above": -100.0}
 
     range: Annotated[tuple[float, float], _range("%", "+- 10 %", above=-1.0, most=10.0)]
     """deviation from the study's value"""
@@ -101,6 +121,8 @@ class OfTemperature(_Uncertain):
 
 class OfExponent(_Uncertain):
     """A Hurst exponent that is not known exactly."""
+
+    _LIMITS: ClassVar[dict[str, float]] = {"above": 0.0, "below": 1.0}
 
     range: Annotated[tuple[float, float], _range("", "0.6 to 0.8", above=0.0, below=1.0)]
     """least and greatest value"""
@@ -336,9 +358,9 @@ def check_uncertainty(study) -> None:
     if not uncertain.factors():
         raise StudyError("got none, need an uncertain quantity or choice")
     if uncertain.temperature:
-        _check_temperatures(study, uncertain.temperature.range)
+        _check_temperatures(study, uncertain.temperature.ends)
     if uncertain.force:
-        lower, upper = uncertain.force.range
+        lower, upper = uncertain.force.ends
         study.check_window(min(study.operating_grid.force) * (1.0 + lower), "force.range")
         study.check_window(max(study.operating_grid.force) * (1.0 + upper), "force.range")
     if uncertain.hurst_exponent and not all(line.hurst_exponent for line in spec.lines):
@@ -376,8 +398,8 @@ def _check_bands(study):
     """Refuse bands of wavelengths that the grid of lines or surfaces cannot have."""
     uncertain, spec = study.uncertainty, study.line_spec
     exact = 0.0, 0.0
-    long = uncertain.longest_wavelength.range if uncertain.longest_wavelength else exact
-    short = uncertain.shortest_wavelength.range if uncertain.shortest_wavelength else exact
+    long = uncertain.longest_wavelength.ends if uncertain.longest_wavelength else exact
+    short = uncertain.shortest_wavelength.ends if uncertain.shortest_wavelength else exact
     narrow = deviating_lines(spec, {"longest_wavelength": long[0], "shortest_wavelength": short[1]})
     wide = deviating_lines(spec, {"longest_wavelength": long[1], "shortest_wavelength": short[0]})
     shorter = min(line.longest_wavelength for line in narrow.lines)

@@ -47,6 +47,11 @@ def test_heights_with_less_kurtosis_than_lognormal_ones_end_nowhere():
     assert (found <= RATIOS[-1]).all()
 
 
+def test_an_unknown_film_has_no_equivalent_and_leaves_those_of_others():
+    found = equivalent([2.0, np.nan], 0.5, 4.0)
+    assert found[0] == equivalent(2.0, 0.5, 4.0) and np.isnan(found[1])
+
+
 @pytest.fixture(scope="module")
 def counted():
     """Contact of drawn lines with other heights, over skewness, kurtosis and lambda ratio."""

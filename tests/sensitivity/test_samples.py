@@ -28,6 +28,15 @@ def test_95_percent_of_normal_deviations_lie_within_their_range():
     assert found.min() == pytest.approx(-0.2) and found.max() == pytest.approx(0.4)
 
 
+@pytest.mark.parametrize("given", ["-0.2 to 0.2", "-0.3 to 0.1"])
+def test_normal_deviations_go_as_far_as_the_ends_that_are_stated(given):
+    """Exactly: heights are tabulated between them."""
+    section = {"range": given, "distribution": "normal", "source": "assumed"}
+    factors = Uncertainty.model_validate({"skewness": section}).factors()
+    found = deviations(factors, np.array([[0.0], [1.0]]))["skewness"]
+    assert tuple(found) == factors[0].given.ends
+
+
 def test_choices_are_equally_likely():
     given = {"choices": ["paper", "moes", "grubin"], "source": "assumed"}
     found = of(film_formula=given)["film_formula"]

@@ -8,6 +8,7 @@ from lube.study.uncertainty import check_uncertainty
 
 PAPER = ROOT / "workflow/config/paper.yaml"
 SOURCE = {"source": "assumed"}
+NORMAL = {"distribution": "normal"} | SOURCE
 
 
 def with_section(tmp_path, **section):
@@ -73,6 +74,16 @@ def test_ranges_are_read_in_their_units(tmp_path):
         ("hurst_exponent", {"range": "+- 0.1"} | SOURCE, "need a range such as 0.6 to 0.8"),
         ("temperature", {"range": "+- 2 %"} | SOURCE, "temperature.range: wrong dimension or unit"),
         ("skew", {"range": "+- 2 %"} | SOURCE, "uncertainty.skew: unknown key"),
+        (
+            "critical_thickness",
+            {"range": "-80 % to 0 %"} | NORMAL,
+            "critical_thickness.distribution: normal: got -100, need a value above -100 %",
+        ),
+        (
+            "hurst_exponent",
+            {"range": "0.5 to 0.95"} | NORMAL,
+            "distribution: normal: got 1.0625, need a value above 0 and below 1",
+        ),
         ("bias_voltage", {"range": "+- 2 %"} | SOURCE, "uncertainty.bias_voltage: unknown key"),
         ("film_shape", {"choices": ["flat"]} | SOURCE, "need 2 or more entries"),
         ("film_shape", {"choices": ["flat", "round"]} | SOURCE, "got 'round'"),
@@ -99,6 +110,7 @@ def test_a_range_needs_a_source(tmp_path):
     ("section", "said"),
     [
         ({"uncertainty": {"temperature": {"range": "+- 9 K"} | SOURCE}}, "got 31 degC, need 35"),
+        ({"uncertainty": {"temperature": {"range": "+- 4 K"} | NORMAL}}, "got 34 degC, need 35"),
         (
             {"uncertainty": {"shortest_wavelength": {"range": "-90 % to 0 %"} | SOURCE}},
             "shortest_wavelength.range: got down to 0.314 µm, need two points",
