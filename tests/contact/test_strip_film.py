@@ -80,6 +80,46 @@ def test_the_share_of_a_revolution_scatters_between_pairs_as_expected(spec, surf
     assert abs(np.mean(np.log(ratios))) < 0.1
 
 
+def answered_shares(spec, surface, strip, generator):
+    """Share of a revolution in which each pair touches that the oil answers; see `rollers`."""
+    answer, waves = strip.answers[0], surface.draw(generator, surface.points)[2]
+    films = (strip.films(surface.spacing[1]) / spec.height_step).astype(np.float32)
+    position = strip.begin + surface.spacing[1] * (np.arange(films.size) + 0.5)
+    down, along = np.meshgrid(
+        2.0 * np.pi * np.fft.fftfreq(surface.points[0], surface.spacing[0]),
+        2.0 * np.pi * np.fft.rfftfreq(surface.points[1], surface.spacing[1]),
+        indexing="ij",
+    )
+    functions = np.ones((films.size, 1)), answer.at(position / answer.half_width)
+    filters = answer.filters_at(np.maximum(along, 1.0).ravel(), down.ravel())
+    fields = []
+    for own in (1.0, *filters.T.reshape(-1, *along.shape)):
+        field = np.fft.irfft2(waves * own, surface.points).astype(np.float32)
+        fields.append(np.hstack([field, field[:, : films.size]]))
+    functions = np.hstack(functions).astype(np.float32)
+    rows, apart = int(LENGTH / surface.spacing[0]), surface.points[0] // PAIRS
+    touching = []
+    for step in range(0, surface.points[1], 2):
+        here = slice(step, step + films.size)
+        gap = sum(field[:, here] * own for field, own in zip(fields, functions.T, strict=True))
+        tops = (gap > films).any(axis=1)
+        touching.append([tops[row : row + rows].any() for row in range(0, PAIRS * apart, apart)])
+    return np.mean(touching, axis=0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("film_shape", ["flat", "computed"])
+def test_shares_scatter_between_pairs_that_the_oil_answers_as_expected(
+    study, spec, surface, film_shape
+):
+    strip, _ = answered_strip(study, spec, film_shape, 0.0, 2.4)
+    seeds = map(np.random.default_rng, range(SURFACES))
+    found = np.ravel([answered_shares(spec, surface, strip, seed) for seed in seeds])
+    expected = pair_deviation(found.mean(), *strip.common(spec, LENGTH), surface.sides[1])
+    assert 0.2 < found.mean() < 0.7
+    assert abs(np.log(found.std(ddof=1) / expected)) < 0.2
+
+
 def test_contacts_are_in_the_strip_as_long_as_expected(spec, surface, rollers):
     side = surface.sides[1]
     for film in films_of(spec):
