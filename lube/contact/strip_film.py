@@ -122,7 +122,8 @@ class StripFilm:
         square, along = moments[:, :1, :1], moments[:, 0, 1:]
         # The rms height changes along the strip, too.
         changes = (moments[:, 1:, 1:] - along[:, :, None] * along[:, None] / square) / square
-        level, spacing = self.levels(spec), self.width / COLUMNS
+        spacing = self.width / COLUMNS
+        level = self.films(spacing) / np.sqrt(moments[:, 0, 0])
         level = level - max(level.min() - HIGHEST, 0.0)
         return passing_contacts(level, changes, length, spacing, self.has_edges)
 
