@@ -142,8 +142,10 @@ def map_curves(master: xr.Dataset, comparison: xr.Dataset) -> RecordCurves:
 def curve_at(master: xr.Dataset, width: float, layer: xr.DataArray | None = None) -> Curve:
     """Curve of the mean breakthrough probability and of its effective sample size.
 
-    If contacts occur independently along the line, -ln(1 - p) is proportional to the width. So it
-    is extrapolated in proportion beyond the map's widths, and interpolated linearly between them.
+    If contacts occur independently along the line, -ln(1 - p) is proportional to the width, but
+    for what the edges of the window cut off, which does not depend on it. So it is interpolated
+    linearly between the map's widths, and beyond them it follows the straight line through its
+    ends; in proportion if the map has one width.
 
     Parameters
     ----------
@@ -170,6 +172,10 @@ def curve_at(master: xr.Dataset, width: float, layer: xr.DataArray | None = None
     intensity = -np.log1p(-np.minimum(probability.values, 1.0 - 1e-12))
     nearest = np.clip(width, widths[0], widths[-1])
     here = np.array([np.interp(width, widths, row) for row in intensity]) * width / nearest
+    if widths.size > 1:
+        first, last = intensity[:, 0] * widths[-1], intensity[:, -1] * widths[0]
+        at_edges = (first - last) / (widths[-1] - widths[0])
+        here = np.maximum(here + at_edges * (1.0 - width / nearest), 0.0)
     resolution = 1.0 / (windows_in(master, width) * master.sizes["realisation"])
     return peaked_curve(np.log(ratios), -np.expm1(-here), sample_size, resolution)
 

@@ -85,7 +85,7 @@ _NEEDED = {
     "has_records": "measured records, an `experiment.manifest`: the simulated rig runs with lines",
     "compares_surfaces": "measured records and `contact_model: surface`",
     "compares_lines_only": "records compared with lines alone; `gauge.nc` has films by surfaces",
-    "uncertainty": "a section `uncertainty`",
+    "is_uncertain": "a section `uncertainty` of what the probability depends on",
     "is_sampled": "Gaussian roughness lines that no formula flattens",
     "gap.is_plain": "`film_shape: flat` and `roughness_deformation: none`",
 }
@@ -227,7 +227,7 @@ class StudyFiles:
                         raise LubeError(f"{self.path}: got the target {target}, need {needed}")
             made = {*asked}.union(*map(self.study.forerunners, asked))
             if any(
-                "uncertainty" in STAGES[stage].only_with for stage in made if self.study.has(stage)
+                "is_uncertain" in STAGES[stage].only_with for stage in made if self.study.has(stage)
             ):
                 with located(f"{self.path}: uncertainty"):
                     check_uncertainty(self.study)

@@ -326,7 +326,7 @@ _ROWS = (
         values=_LINES | _CONTACT | _named("rollers.length contact_model uncertainty"),
         same_values=("film",),
         target="sensitivity",
-        only_with=("uncertainty", "is_sampled", *_LINE),
+        only_with=("is_uncertain", "is_sampled", *_LINE),
         in_batches="samples",
     ),
     Stage(
@@ -334,7 +334,7 @@ _ROWS = (
         "what the probability rests on, by Morris and Sobol, some minutes",
         inputs=("sensitivity_runs",),
         target="sensitivity",
-        only_with=("uncertainty", "is_sampled", *_LINE),
+        only_with=("is_uncertain", "is_sampled", *_LINE),
         parallel=True,
     ),
     Stage(
@@ -343,7 +343,7 @@ _ROWS = (
         inputs=("comparison", "sensitivity_runs"),
         inputs_with={"surface_records": "compares_surfaces"},
         target="sensitivity",
-        only_with=("uncertainty", "is_sampled", *_LINE, "conducts", "has_records"),
+        only_with=("is_uncertain", "is_sampled", *_LINE, "conducts", "has_records"),
     ),
     Stage(
         "electrical",

@@ -286,6 +286,10 @@ STAND_IN = {"computed": "moes"}
 
 def joined(films: list[tuple[Array, xr.Dataset]]) -> xr.Dataset:
     """Join the variables `FILM` of films by `Deviating.films`, in the order of the runs."""
-    tables = [film[FILM].broadcast_like(film["film_thickness"]) for _, film in films]
+    tables = []
+    for runs, film in films:
+        # Films are the same in all runs if only lines, layer or choices of the model deviate.
+        like, _ = xr.broadcast(film["film_thickness"], xr.DataArray(runs, dims="run"))
+        tables.append(film[FILM].broadcast_like(like))
     table = xr.concat(tables, "run", coords="minimal", compat="override", join="exact")
     return table.isel(run=np.argsort(np.concatenate([runs for runs, _ in films])))

@@ -167,6 +167,11 @@ class Study(StrictModel):
         return self.resistivity != INSULATOR
 
     @property
+    def is_uncertain(self) -> bool:
+        """Whether anything on which the probability depends is stated as not known exactly."""
+        return self.uncertainty is not None and bool(self.uncertainty.factors())
+
+    @property
     def resistivity_range(self) -> tuple[float, float] | None:
         """How far the resistivity may deviate, over its value; None if that is not stated."""
         given = self.uncertainty and self.uncertainty.resistivity

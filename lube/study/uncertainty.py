@@ -355,8 +355,6 @@ def check_uncertainty(study) -> None:
             f"load_sharing: got {study.load_sharing}, need none: probabilities of random values "
             "are sampled without the load that asperities carry"
         )
-    if not uncertain.factors():
-        raise StudyError("got none, need an uncertain quantity or choice")
     if uncertain.temperature:
         _check_temperatures(study, uncertain.temperature.ends)
     if uncertain.force:

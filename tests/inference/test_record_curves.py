@@ -38,6 +38,21 @@ def test_a_curve_is_right_at_any_width_between_and_beyond_the_maps(master):
     np.testing.assert_allclose(curve.logit_at(np.log(RATIOS)), logit(chance(RATIOS, 0.6e-3)))
 
 
+@pytest.mark.parametrize("at_edges", [0.3, -0.2])
+def test_beyond_the_maps_widths_the_edges_of_the_window_add_what_they_add_within(master, at_edges):
+    """What they cut off holds more easily or breaks more easily, however wide the window is."""
+
+    def mean(width):
+        return -np.expm1(-np.maximum(width / 1e-3 + at_edges, 0.0) * RATIOS**-2.0)
+
+    values = np.stack([mean(width) for width in WIDTHS], axis=1)
+    own = master.assign(breakthrough_probability_mean=(DIMS, values))
+    for width in (0.3e-3, 0.7e-3, 3e-3):
+        found = expit(curve_at(own, width).logit_at(np.log(RATIOS)))
+        np.testing.assert_allclose(found, mean(width), rtol=1e-9)
+    assert curve_at(own, 1e-5).films.size == (RATIOS.size if at_edges > 0.0 else 0)
+
+
 def test_the_sample_size_is_that_of_the_scatter_between_realisations(master):
     curve = curve_at(master, WIDTHS[1])
     mean = chance(RATIOS, WIDTHS[1])

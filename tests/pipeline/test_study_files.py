@@ -56,6 +56,17 @@ def test_a_sensitivity_study_is_checked_with_all_that_it_is_made_for(paper_with)
             files.check_targets(["--cores", "2", target], figures)
 
 
+def test_a_range_of_the_resistivity_alone_makes_no_sensitivity_study(paper_with):
+    """No probability depends on it, so records are planned without one."""
+    given = {"resistivity": {"range": "+- 10 %", "source": "assumed"}}
+    path = paper_with(("uncertainty", given), ("name", "mine"))
+    study = load_study(path)
+    files = StudyFiles(study, path, {})
+    files.check_targets(["measurement_plan", "electrical"], study_figures(study))
+    with pytest.raises(SystemExit, match="got the target sensitivity, need a section"):
+        files.check_targets(["sensitivity"], {})
+
+
 def test_inputs_are_named_from_the_working_folder_each_once(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert input_paths([tmp_path / "b", "a", tmp_path / "a"]) == ["a", "b"]

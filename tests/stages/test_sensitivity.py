@@ -74,6 +74,16 @@ def test_runs_do_not_depend_on_batches_or_the_number_of_threads(study, direct):
             np.testing.assert_array_equal(six_digits(found[name].values), expected[name])
 
 
+@pytest.mark.parametrize("name", ["critical_thickness", "film_formula"])
+def test_a_factor_alone_explains_all_but_the_random_numbers(study, few, name):
+    """Also one with which the films do not vary continuously."""
+    factor = Uncertainty.model_validate({name: SMALL[name]})
+    own = study.model_copy(update={"uncertainty": factor})
+    found = sensitivity.make(own, made(own, ["sensitivity_runs"]))
+    assert found["factor"].values.tolist() == [name, SEED]
+    np.testing.assert_allclose(found["total_effect"].sum("factor"), 1.0, atol=0.1)
+
+
 def test_runs_without_breakthroughs_are_refused_in_one_line(study, direct):
     """As of the smoke study, on whose coarse grid the layer of hardly any contact breaks."""
     probability = direct[PROBABILITY].where(direct["film_shape"] == "flat")
