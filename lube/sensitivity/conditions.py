@@ -1,7 +1,7 @@
 """Films, lines and boundary layers of a study whose uncertain quantities deviate."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 
@@ -80,7 +80,9 @@ class Deviating:
     heights: Callable | None
 
     @classmethod
-    def of(cls, study: Study, named: str = "uncertainty") -> "Deviating":
+    def of(
+        cls, study: Study, named: str = "uncertainty", temperatures: Iterable[float] = ()
+    ) -> "Deviating":
         """Tabulate the oils over the temperatures that occur, and the heights.
 
         The oils are tabulated as far as their data reach.
@@ -91,6 +93,8 @@ class Deviating:
             The study.
         named : str, optional
             Name of its ranges in messages.
+        temperatures : iterable of float, optional
+            Temperatures that occur besides those of the study's operating points, degC.
 
         Raises
         ------
@@ -99,7 +103,8 @@ class Deviating:
         """
         with located(named):
             check_uncertainty(study)
-        levels, uncertain = study.operating_grid.temperature, study.uncertainty.temperature
+        levels = *study.operating_grid.temperature, *temperatures
+        uncertain = study.uncertainty.temperature
         lower, upper = uncertain.ends if uncertain else (0.0, 0.0)
         ranges = [record.valid_temperatures for record in study.lubricants]
         coldest = max(min(levels) + lower, *(one[0] for one in ranges))

@@ -61,7 +61,7 @@ def _assumed(study, inputs, comparison):
     """Find the ends of the band of the assumptions at all records, for each contact model."""
     points = xr.Dataset({name: ("point", comparison[name].values) for name in POINT_DIMS})
     with one_blas_thread():  # the number of threads would change the last digits
-        deviating = Deviating.of(study)
+        deviating = Deviating.of(study, temperatures=comparison["temperature"].values)
         predictor = Predictor.of(deviating, inputs["sensitivity_runs"])
         means, places = predictor.draws(points)
     slip = abs(comparison["slide_to_roll_ratio"].values - rolling(study.slips))

@@ -105,6 +105,14 @@ def test_without_deviations_films_are_those_of_the_study(study, deviating):
     assert found["film_thickness"].item() == pytest.approx(expected["film_thickness"].item(), 1e-6)
 
 
+def test_films_of_records_beyond_the_studys_temperatures_have_the_oils_properties(study):
+    at = points().assign(temperature=("point", [95.0]))
+    found = films(Deviating.of(study, temperatures=[95.0]), {"force": 0.0}, at).squeeze()
+    oil = lubricant_table(study.lubricants, [95.0])
+    expected = film_table(oil, study.rollers, [400.0], [120.0], ["paper"]).squeeze()
+    assert found["film_thickness"].item() == pytest.approx(expected["film_thickness"].item(), 1e-5)
+
+
 def test_deviating_lines_are_those_of_a_study_with_these_values(study, deviating):
     own = study.line_spec
     deviations = {

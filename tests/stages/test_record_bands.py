@@ -44,7 +44,7 @@ def test_each_contact_model_has_a_band_and_slip_has_no_assumptions(monkeypatch):
     )
 
     class Sampled:
-        of = staticmethod(lambda *_: Sampled())
+        of = staticmethod(lambda *_, **__: Sampled())
         choices = staticmethod(lambda name, own: (own,))
         draws = staticmethod(
             lambda _: (np.full((64, 2), 0.3), np.linspace(0.01, 0.99, 64)[:, None])
