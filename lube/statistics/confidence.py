@@ -174,7 +174,7 @@ def breakthrough_limit(upper: Values, contact: Values, sampled: int) -> Values:
 
     Examples
     --------
-    >>> breakthrough_limit(np.array([0.0, 0.2]), np.array([0.1, 0.4]), 1000).round(6)
+    >>> breakthrough_limit(np.array([0.0, 0.2]), np.array([0.1, 0.4]), 1000).round(4)
     array([0.0003, 0.2   ])
     """
     return np.where(np.equal(upper, 0.0), contact * unseen_limit(sampled), upper)

@@ -156,7 +156,8 @@ def test_the_most_complete_model_is_asked_for_by_name(rollers, oil):
     other = lube.contact_probability(rollers, oil, **POINT, **drawn)
     assert found["film_thickness"] == other["film_thickness"]
     assert found["surface_contacts_upper"] < other["surface_contacts_lower"]
-    assert np.isnan(found["surface_expected_contacts"])
+    assert found["surface_expected_contacts"] < other["surface_expected_contacts"]
+    assert np.isnan(found["surface_expected_breakthroughs"])
 
 
 def test_contact_that_no_realisation_sees_has_a_probability(rollers, oil):

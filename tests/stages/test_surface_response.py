@@ -44,8 +44,7 @@ def test_the_oil_makes_contact_of_surfaces_rarer_and_the_more_with_slip(few, fil
     assert (probability.squeeze() < other["geometric_contact_probability"].squeeze()).all()
     rolling, sliding = (probability.sel(slide_to_roll_ratio=slip) for slip in (0.0, 0.5))
     assert (sliding < 0.9 * rolling).isel(force=-1).all()
-    assert found["expected_contacts"].isnull().all()
-    assert other["expected_contacts"].notnull().all()
+    assert (found["expected_contacts"] < other["expected_contacts"]).all()
 
 
 def test_threads_do_not_change_a_bit(few, files):
