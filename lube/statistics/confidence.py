@@ -132,26 +132,15 @@ def probability_limits(mean: Array, sample_size: Values, degrees: Values, window
     normal = scipy.special.ndtri(0.5 + CONFIDENCE / 2.0)
     quantile = np.where(scattered, student, normal)
     lower, upper = score_interval(mean, np.where(scattered, sample_size, windows), quantile)
-    bound = unseen_limit(windows)
+    bound = _unseen_limit(windows)
     one_sided = [mean == 0.0, mean == 1.0]
     lower = np.select(one_sided, [0.0, 1.0 - bound], np.minimum(lower, 1.0 - bound))
     upper = np.select(one_sided, [bound, 1.0], np.maximum(upper, bound))
     return lower, upper
 
 
-def unseen_limit(windows: Values) -> Values:
-    """Upper limit of the probability of what none of some independent windows shows.
-
-    Parameters
-    ----------
-    windows : float or numpy.ndarray
-        Number of windows.
-
-    Returns
-    -------
-    float or numpy.ndarray
-        The limit, as `probability_limits` explains.
-    """
+def _unseen_limit(windows):
+    """Upper limit of the probability of what none of some independent windows shows."""
     return 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
 
 
@@ -177,7 +166,7 @@ def breakthrough_limit(upper: Values, contact: Values, sampled: int) -> Values:
     >>> breakthrough_limit(np.array([0.0, 0.2]), np.array([0.1, 0.4]), 1000).round(4)
     array([0.0003, 0.2   ])
     """
-    return np.where(np.equal(upper, 0.0), contact * unseen_limit(sampled), upper)
+    return np.where(np.equal(upper, 0.0), contact * _unseen_limit(sampled), upper)
 
 
 def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array]:
