@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import scipy
 
-from lube.contact.surface_answers import AnsweredStrip, moments_by_oil
+from lube.contact.surface_answers import AnsweredStrip, moments_in_gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import (
     PassingContacts,
@@ -195,13 +195,15 @@ class StripFilm:
         shared = [np.minimum(density[lag:], density[: density.size - lag]).sum() for lag in lags]
         return number / whole * lags, np.array(shared) / whole
 
+    @functools.lru_cache(maxsize=1)  # noqa: B019 - of one strip at a time
     def _moments(self, spec):
         """Compute the `height_moments` in the gap, at `COLUMNS` columns."""
         if not self.answers:
             return height_moments(spec)
         position, each = self._columns(self.width / COLUMNS), enumerate(self.answers)
-        added = [moments_by_oil(surface_waves(spec, one), answer, position) for one, answer in each]
-        return height_moments(spec) + np.stack(added)
+        return np.stack(
+            [moments_in_gap(surface_waves(spec, one), answer, position) for one, answer in each]
+        )
 
     def _columns(self, spacing):
         return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)

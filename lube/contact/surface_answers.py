@@ -95,10 +95,10 @@ class SurfaceAnswer(Answer):
         return filters((longest, angle))
 
 
-def moments_by_oil(
+def moments_in_gap(
     waves: tuple[Array, Array, Array], answer: SurfaceAnswer, position: Array
 ) -> Array:
-    """Find what the oil adds to the second moments of a surface in the gap.
+    """Compute second moments of the heights of a surface in the gap, and of their changes.
 
     Parameters
     ----------
@@ -112,22 +112,22 @@ def moments_by_oil(
     Returns
     -------
     numpy.ndarray, shape (columns, 4, 4)
-        In the order of `lube.contact.strip_film.height_moments`, m^2 times 1/m for each change.
+        As `lube.contact.strip_film.height_moments` of one surface.
     """
-    along, across, power = waves
-    filters = answer.filters_at(along, across)
+    filters = answer.filters_at(*waves[:2])
     changed = np.any(filters, axis=1)
-    along, across, filters, power = (each[changed] for each in (along, across, filters, power))
-    shapes = answer.at(position / answer.half_width)
+    shapes, filters = answer.at(position / answer.half_width), filters[changed]
     kept = 1.0 + np.einsum("cm,wm->cw", shapes, filters)
     slopes = np.einsum("cm,wm->cw", np.gradient(shapes, position, axis=0), filters)
 
-    def moments(kept, slopes):
+    def moments(some, kept, slopes):
+        along, across, power = (each[some] for each in waves)
         changes = slopes + 1j * along * kept, 1j * across * kept, -1j * along * kept
         each = np.sqrt(power) * np.stack([kept, *changes])
         return np.einsum("icw,jcw->cij", each.conj(), each).real
 
-    return moments(kept, slopes) - moments(np.ones_like(kept), 0.0)
+    others = np.ones((1, np.count_nonzero(~changed)))
+    return moments(changed, kept, slopes) + moments(~changed, others, 0.0)
 
 
 class AnsweredStrip:

@@ -164,6 +164,8 @@ def surface_contact(
     dims, shape = thickness.dims, thickness.shape
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
     found = xr.Dataset(values, thickness.coords)
+    looked_at = set(np.array(known, int)[wanted])
+    strips = [strip if point in looked_at else None for point, strip in enumerate(strips)]
     points = thickness.copy(data=np.arange(thickness.size).reshape(thickness.shape))
     width = _passage_width(spec, strips, length, slide_to_roll_ratio, points)
     return found.assign(passage_width=width)
@@ -223,8 +225,9 @@ def strip_films(spec: LineSpecLike, film: xr.Dataset, gap: Gap) -> list[StripFil
 
 def _contacts(spec, strips, changed, sharp, wanted, length, seeds, threads):
     """Variables of `surface_contact` at some strips, of which changed ones are sampled."""
-    known = zip(strips, sharp, strict=True)
-    expected = np.array([strip.expected(spec, length, own) for strip, own in known]).T
+    expected = np.full((2, len(strips)), np.nan)
+    for point in np.flatnonzero(wanted):
+        expected[:, point] = strips[point].expected(spec, length, sharp[point])
     certain = expected[0] > MANY
     found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
 

@@ -90,8 +90,8 @@ def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
     return math.sqrt(m2 / m0) / (2.0 * math.pi) * np.exp(-0.5 * np.square(level) / m0)
 
 
-def mean_overlap(level: Values, rms: float) -> Values:
-    r"""Mean height of a Gaussian line above a level, counted as zero where it is below.
+def mean_overlap(level: Values, rms: Values) -> Values:
+    r"""Mean of a Gaussian height above a level, counted as zero where it is below.
 
     .. math:: \sigma \left( \varphi(t) - t\, Q(t) \right), \qquad t = h / \sigma
 
@@ -99,8 +99,8 @@ def mean_overlap(level: Values, rms: float) -> Values:
     ----------
     level : float or numpy.ndarray
         Level h, m.
-    rms : float
-        Rms height :math:`\sigma` of the line, m.
+    rms : float or numpy.ndarray
+        Rms height :math:`\sigma`, m.
 
     Returns
     -------
@@ -268,19 +268,18 @@ def passing_contacts(
     '0.0714 0.0035'
     """
     decay = np.exp(-0.5 * np.square(level)) / (2.0 * math.pi)
-    (x, y, t), (xy, xt, yt) = (
-        [changes[:, i, j] for i, j in pairs]
-        for pairs in (((0, 0), (1, 1), (2, 2)), ((0, 1), (0, 2), (1, 2)))
-    )
-    sides = length * np.sqrt(y)
+    pairs = (0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)
+    xx, yy, tt, xy, xt, yt = (changes[:, i, j] for i, j in pairs)
+    sides = length * np.sqrt(yy)
     within = sides * level / math.sqrt(2.0 * math.pi), level - 1.0 / level
-    within = *within, x - xy**2 / y, xt - xy * yt / y, t - yt**2 / y
+    within = *within, xx - xy**2 / yy, xt - xy * yt / yy, tt - yt**2 / yy
     density, appearing, slope = 0.0, 0.0, np.gradient(level, spacing)
-    for weight, order, a, p, c in (within, (1.0, level, x, xt, t)):
+    for weight, order, a, p, c in (within, (1.0, level, xx, xt, tt)):
         spread = np.sqrt(a)
-        begin, end = (_mean_rise(sign * slope, spread) for sign in (-1.0, 1.0))
+        begin, end = (mean_overlap(sign * slope, spread) for sign in (1.0, -1.0))
         density += weight * decay * math.sqrt(0.5 * math.pi) * (begin + end)
-        rising = _mean_rise(p / a * slope, np.sqrt(np.maximum(c - p**2 / a, 1e-24 * c)))
+        # At a column a summit rises above the level by its own change and along the level's slope.
+        rising = mean_overlap(-p / a * slope, np.sqrt(np.maximum(c - p**2 / a, 1e-24 * c)))
         more = weight * spread * decay * np.maximum(order, 0.0) * rising
         appearing += spacing * np.sum(more)
         if has_edges:
@@ -292,13 +291,6 @@ def passing_contacts(
     if has_edges:
         number += 0.5 * np.sum((sides * decay + scipy.special.ndtr(-level))[[0, -1]])
     return PassingContacts(density, number, appearing)
-
-
-def _mean_rise(mean, spread):
-    """Mean of a normal variable, counted as zero where it is below."""
-    ratio = mean / spread
-    density = np.exp(-0.5 * ratio**2) / math.sqrt(2.0 * math.pi)
-    return spread * (density + ratio * scipy.special.ndtr(ratio))
 
 
 def sharp_surface_summit_share(level: Array, moments: SurfaceMoments, curvature: Values) -> Array:
