@@ -9,6 +9,7 @@ from lube.contact.surface_strip import strip_films
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.study.oil_properties import lubricant_table
+from lube.surfaces.rough_surface import field
 
 
 def answered_strip(study, spec, film_shape, slip, ratio):
@@ -31,7 +32,7 @@ class Unchanged:
 
     def heights(self, waves):
         """Make the heights of some columns, given the waves of both surfaces."""
-        heights = np.fft.irfft2(sum(waves), self._surface.points)
+        heights = field(sum(waves), self._surface.points)
         return lambda column, width: heights[:, column : column + width]
 
 
@@ -52,7 +53,7 @@ class Filtered:
         self._surface, half_width = surface, film["contact_half_width"].item()
         column = np.arange(strip.films(surface.spacing[1]).size)
         position = (strip.begin + surface.spacing[1] * (column + 0.5)) / half_width
-        rows, columns = surface.points
+        rows, columns = surface.coarse
         numbers = np.fft.fftfreq(rows, 1.0 / rows), np.arange(columns // 2 + 1)
         down, along = np.meshgrid(*numbers, indexing="ij")
         inverse = np.hypot(down / surface.sides[0], along / surface.sides[1])
@@ -82,9 +83,12 @@ class Filtered:
     def heights(self, waves):
         """Make the heights of some columns, given the waves of both surfaces."""
         shape = self._surface.points
-        heights = np.fft.irfft2(sum(waves), shape)
+        heights = field(sum(waves), shape)
         down, along = self._changed
-        changed_rows, first = np.unique(down, return_index=True)
+        rows, first = np.unique(down, return_index=True)
+        changed_rows = np.where(
+            rows < self._surface.coarse[0] / 2, rows, rows - self._surface.coarse[0]
+        )
 
         def across(column, width):
             at = 2j * np.pi / shape[1] * along[:, None] * (column + np.arange(width))
@@ -93,7 +97,7 @@ class Filtered:
             for own, response in zip(waves, self._responses, strict=True):
                 of_waves = own[self._changed][:, None] * response * twice
                 added[changed_rows] += np.add.reduceat(of_waves, first)
-            added = np.fft.ifft(added, axis=0).real / shape[1]
+            added = np.fft.ifft(added, axis=0, norm="forward").real
             return heights[:, column : column + width] + added
 
         return across
