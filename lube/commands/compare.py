@@ -176,11 +176,12 @@ def _limits(dataset, name):
 
 
 def _intervals_apart(one, other, name):
-    """Say how many intervals do not overlap."""
+    """Say how many intervals do not overlap, or are in one dataset only."""
     here, there = _limits(one, name), _limits(other, name)
     if not (here and there):
         return ""
-    apart = int(((here[0] > there[1]) | (there[0] > here[1])).sum())
+    alone = here[0].isnull() != there[0].isnull()
+    apart = int((alone | (here[0] > there[1]) | (there[0] > here[1])).sum())
     return f"; {apart or 'all'} intervals {'do not ' * (apart > 0)}overlap"
 
 

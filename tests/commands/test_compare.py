@@ -64,6 +64,7 @@ def test_a_value_is_shown_with_its_place_size_and_interval(compared):
 def test_a_value_that_only_one_has_is_the_largest_difference(compared):
     (line,) = compared(dataset(BASE), dataset([[0.9, 0.3], [np.nan, np.nan]]))
     assert "2 of 4 differ, most at force 1600, temperature 40: 0.4 (0.3 to 0.5) against nan" in line
+    assert line.endswith("; 2 intervals do not overlap")  # one of them is in the first only
 
 
 def test_a_limit_that_differs_alone_is_named(compared):
