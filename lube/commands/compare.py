@@ -191,7 +191,8 @@ def _values_of_studies(one, other):
     for dataset in (one, other):
         stages = json.loads(dataset.attrs.get("config", "{}")).values()
         configs.append({name: value for stage in stages for name, value in single_values(stage)})
-    names = [name for name in configs[0] if configs[0][name] != configs[1].get(name)]
+    names = configs[0] | configs[1]
+    names = [name for name in names if configs[0].get(name) != configs[1].get(name)]
     for name in names[:_MOST_CHANGES]:
         here, there = (shown(config.get(name)) for config in configs)
         yield f"the studies differ in {name}: {here} against {there}"

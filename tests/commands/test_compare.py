@@ -98,6 +98,19 @@ def test_texts_and_sizes_differ_too_and_the_studies_say_why(compared):
     ]
 
 
+def test_values_of_either_study_are_named(compared):
+    one, other = dataset(BASE), dataset([[0.0, 0.3], [0.4, np.nan]])
+    one.attrs["config"] = json.dumps({"trace": {"traces": [{"force": 1.0}], "surface": None}})
+    traces = [{"force": 1.0}, {"force": 2.0}]
+    other.attrs["config"] = json.dumps({"trace": {"traces": traces, "surface": {"use": "x"}}})
+    (_, *named), reverse = compared(one, other), compared(other, one)
+    assert sorted(named) == [
+        "the studies differ in surface.use: None against 'x'",
+        "the studies differ in traces[1].force: None against 2.0",
+    ]
+    assert "the studies differ in traces[1].force: 2.0 against None" in reverse
+
+
 def test_a_scalar_that_differs_is_shown_with_both_values(compared):
     one = xr.Dataset({"number": 2.0, "count": 3, "flag": True, "word": "x", "lacking": np.nan})
     other = xr.Dataset({"number": 2.5, "count": 4, "flag": False, "word": "y", "lacking": 1.0})
