@@ -85,8 +85,7 @@ def _pixels(picture):
 
 
 def _datasets(first, second, where):
-    with opened(first) as one, opened(second) as other:
-        one, other = one.load(), other.load()
+    one, other = _in_words(first), _in_words(second)
     if not set(one.data_vars) & set(other.data_vars):
         raise DataError(f"{first} and {second}: no variable in common, need datasets of one kind")
     lines = [*_only_in_one(sorted(one.variables), sorted(other.variables))]
@@ -105,6 +104,17 @@ def _datasets(first, second, where):
     if lines:
         lines += _values_of_studies(one, other)
     yield from (f"{where}: {line}" for line in lines)
+
+
+def _in_words(path):
+    """Load a dataset, with the meanings of its flags in place of their numbers."""
+    with opened(path) as dataset:
+        dataset = dataset.load()
+    for name, flags in dataset.data_vars.items():
+        if "flag_meanings" in flags.attrs:
+            meanings = np.array(flags.attrs["flag_meanings"].split())
+            dataset[name] = flags.dims, meanings[flags.values.astype(int)]
+    return dataset
 
 
 def _labels_only_in_one(here, there, dim):
@@ -142,7 +152,7 @@ def _variables(one, other, name):
     line += f"{_coordinates(here, at)}: {_value(one, name, at)} against {_value(other, name, at)}"
     if numbers and np.isfinite(gap[place]):
         largest = max(np.abs([here.values[place], there.values[place]]))
-        line += f", {100.0 * gap[place] / largest:.2g} %"
+        line += f", {100.0 * gap[place] / largest:.3g} %"
     return line + _intervals_apart(one, other, name)
 
 

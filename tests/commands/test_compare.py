@@ -111,15 +111,25 @@ def test_values_of_either_study_are_named(compared):
     assert "the studies differ in traces[1].force: 2.0 against None" in reverse
 
 
+def test_flags_are_compared_by_their_meanings(compared):
+    flags = xr.DataArray(np.int8([0, 1]), dims="force", attrs={"flag_meanings": "rigid elastic"})
+    assert compared(flags.to_dataset(name="regime"), (0 * flags).to_dataset(name="regime")) == [
+        "regime: 1 of 2 differ, first at force 1: 'elastic' against 'rigid'"
+    ]
+
+
 def test_a_scalar_that_differs_is_shown_with_both_values(compared):
     one = xr.Dataset({"number": 2.0, "count": 3, "flag": True, "word": "x", "lacking": np.nan})
+    one["zero"] = 0.0
     other = xr.Dataset({"number": 2.5, "count": 4, "flag": False, "word": "y", "lacking": 1.0})
+    other["zero"] = -0.1
     assert compared(one, other) == [
         "count: 1 of 1 differ, most: 3 against 4, 25 %",
         "flag: 1 of 1 differ, first: True against False",
         "lacking: 1 of 1 differ, most: nan against 1",
         "number: 1 of 1 differ, most: 2 against 2.5, 20 %",
         "word: 1 of 1 differ, first: 'x' against 'y'",
+        "zero: 1 of 1 differ, most: 0 against -0.1, 100 %",
     ]
     assert compared(one, one) == []
 
@@ -129,6 +139,8 @@ def altered(dataset):
     changed = dataset.copy(deep=True)
     for name, variable in dataset.variables.items():
         match variable.dtype.kind:
+            case "i" if "flag_meanings" in variable.attrs:
+                values = (variable.values + 1) % len(variable.attrs["flag_meanings"].split())
             case "f" | "i" | "u":
                 values = variable.values * 2 + 1
             case "b":
