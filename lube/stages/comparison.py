@@ -228,16 +228,19 @@ def _expected(table, contact_model):
     """95 % range of each figure of agreement if the model is correct, over film_formula.
 
     Each realisation in turn is left out of the ensemble and compared with the others as the
-    record of a pair of rollers, at all records at once. NaN for surfaces, which have none.
+    records of a pair of rollers, at all records at once. It deviates from them as much more or
+    less than in one revolution as records do. NaN for surfaces, which have none.
     """
     ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
     if contact_model == "line":
         measured = np.isfinite(table["measured_share"].values)
         windows = windows_in(table, 2.0 * table["contact_half_width"].values)
-        for row, members in enumerate(table["breakthrough_probability"].values.swapaxes(0, 1)):
+        by_formula = table["breakthrough_probability"].values.swapaxes(0, 1)
+        scatter = table["scatter_ratio"].values
+        for row, (members, ratio) in enumerate(zip(by_formula, scatter, strict=True)):
             known = measured & np.isfinite(members).all(axis=0)
             if len(members) > 2 and known.any():
-                ranges[row] = _ranges(members[:, known], windows[known])
+                ranges[row] = _ranges(members[:, known], windows[known], ratio[known])
     return {
         f"{name}_expected{side}": ranges[:, figure, end]
         for figure, name in enumerate(FIGURES)
@@ -245,14 +248,15 @@ def _expected(table, contact_model):
     }
 
 
-def _ranges(members, windows):
+def _ranges(members, windows, ratio):
     """Range of each figure over the realisations left out, shape (figures, 2)."""
     rows = []
     for number, member in enumerate(members):
         others = np.delete(members, number, axis=0)
         mean, size = others.mean(axis=0), effective_sample_size(others, windows)
-        limits = prediction_limits(mean, size, np.ones(mean.size), len(others))
-        rows.append(agreement(mean, *limits, member))
+        limits = prediction_limits(mean, size, ratio, len(others))
+        shares = np.clip(mean + np.sqrt(ratio) * (member - mean), 0.0, 1.0)
+        rows.append(agreement(mean, *limits, np.where(member * (1.0 - member), shares, member)))
     return pd.DataFrame(rows)[list(FIGURES)].quantile([0.025, 0.975]).T  # of the known ones
 
 

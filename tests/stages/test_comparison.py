@@ -141,6 +141,18 @@ def test_the_expected_range_is_that_of_the_members_left_out_in_turn(perfect, mem
             assert found == pytest.approx(np.quantile(values, level))
 
 
+def test_the_expected_range_is_that_of_the_scatter_of_the_records(compared, busy, mean, perfect):
+    """With slip a record scatters less than a revolution, and so do its measures of agreement."""
+    levels = busy.study.operating_grid.model_dump()
+    slip = experiment_at(levels, mean, slide_to_roll_ratio=0.25, turns=20.0)
+    here, there = (each.sel(FORMULA) for each in (compared(slip), perfect))
+    ratio = np.sqrt(here["scatter_ratio"])
+    assert ratio.max() < 0.8
+    for name in ("bias", "rms_difference"):
+        upper = f"{name}_expected_upper"
+        assert ratio.min() < here[upper] / there[upper] < ratio.max()
+
+
 def test_two_realisations_give_no_range(busy):
     experiment = experiment_of([0.2], **POINT)
     contact = busy.contact.isel(realisation=slice(2))
