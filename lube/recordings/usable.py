@@ -74,7 +74,8 @@ def unsaturated_pieces(recording: Recording, study: Study) -> Iterator[np.ndarra
     DataError
         After the last piece, if too many samples are saturated; and as from `Recording.pieces`.
     """
-    limit = study.rig.amplifier_range if recording.quantity == "voltage" else np.inf
+    # An infinite resistance is an open circuit; none is at or beyond NaN.
+    limit = study.rig.amplifier_range if recording.quantity == "voltage" else np.nan
     samples = saturated = 0
     for piece in recording.pieces():
         samples += piece.size

@@ -312,6 +312,12 @@ def test_many_turns_of_equal_rollers_without_contact_exclude_no_more_than_one(me
     assert uppers[30, 0.1] < 0.1 * uppers[1, 0.1]
 
 
+def test_an_open_circuit_may_have_an_infinite_resistance(measured, tmp_path):
+    written(tmp_path / "open.csv", np.where(np.arange(1000) % 4, np.inf, 1.0))
+    result = measured("open.csv,800,100,40")
+    assert result.refused == "" and at_100_ohm(result)["contact_share"] == 0.25
+
+
 # What cannot be used
 
 
