@@ -30,3 +30,17 @@ def test_figure_14_draws_each_record_at_its_own_temperature(beside):
     drawn = np.concatenate([np.asarray(x, float) for x in drawn])
     assert drawn.size
     assert np.abs(drawn[:, None] - temperatures).min(axis=1).max() < 1e-9
+
+
+def test_figure_18_says_why_records_are_not_folded(files, tmp_path):
+    experiment = xr.load_dataset(files / "experiment.nc")
+    experiment["repeatability"][:3] = np.nan
+    experiment["contact_share"][:3] = np.array([0.3, 0.3, 0.0])[:, None]
+    experiment["duration"][:3] = experiment.revolution_period[:3] * [0.9, 3.0, 3.0]
+    experiment["turns"][:3] = [1.2, 3.0, 3.0]  # of the second roller, if it is the faster one
+    experiment.to_netcdf(tmp_path / "experiment.nc")
+    inputs = {"experiment": tmp_path / "experiment.nc"}
+    figure = draw(ROOT / "notebooks/fig18_folding.ipynb", inputs)
+    (title,) = [name for axes in figure.axes if "folded" in (name := axes.get_title("left"))]
+    assert "1 no longer than one revolution,\n2 never or always" in title  # one of them was there
+    assert "1 sampled too rarely" in title
