@@ -44,3 +44,18 @@ def test_figure_18_says_why_records_are_not_folded(files, tmp_path):
     (title,) = [name for axes in figure.axes if "folded" in (name := axes.get_title("left"))]
     assert "1 no longer than one revolution,\n2 never or always" in title  # one of them was there
     assert "1 sampled too rarely" in title
+
+
+@pytest.mark.parametrize("resistances", [(5.0, np.inf), (0.0, 1e6)])
+def test_figure_13_draws_contact_below_the_threshold_alone(files, tmp_path, resistances):
+    experiment = xr.load_dataset(files / "experiment.nc").assign_coords(origin="measured")
+    for first, resistance in enumerate(resistances):
+        experiment["trace_resistance"][:, first::2] = resistance
+    experiment.to_netcdf(tmp_path / "experiment.nc")
+    inputs = {name: files / f"{name}.nc" for name in ("trace", "rig")}
+    inputs["experiment"] = tmp_path / "experiment.nc"
+    figure = draw(ROOT / "notebooks/fig13_resistance.ipynb", inputs)
+    below = [axes.lines for axes in figure.axes if axes.get_yscale() == "log"]
+    for trace, threshold in below:
+        level, drawn = threshold.get_ydata()[0], trace.get_ydata()
+        assert (drawn[0::2] < level).all() and (drawn[1::2] > level).all()
