@@ -21,14 +21,25 @@ of those of one alignment. :math:`\Phi_2` is the probability that both of two no
 exceed the film u in rms heights, p that one does, :math:`w_i` the surface's part of the mean square
 height, and :math:`\rho_i` the correlation of its heights over the distance r. The part of the
 variance that new alignments do not average out follows from c(s) with :math:`n_g \chi_i`.
+
+With slip a contact also ends because the surfaces move apart. Then contacts are on average in the
+strip for a shorter way of the rollers, d in place of :math:`d_0`. If they end at a constant rate,
+two times between which the rollers move by s, and the surfaces by :math:`v_i s / v`, have in common
+
+.. math:: \rho_S(s) = \left( 1 - \sum_i \chi_i \right) \rho(s)\, e^{-s (1/d - 1/d_0)}
+          + \sum_i \chi_i\, \rho(s\, v_i / v)
+
+A summit of the slower surface stays in the strip for long, and one of a surface at rest for ever,
+where it touches again and again.
 """
 
 import numpy as np
 import scipy
 
+from lube.grid.operating_points import surface_speeds
 from lube.surfaces.rough_surface import field, rough_surface
 from lube.surfaces.synthetic import LineSpecLike
-from lube.types import Array
+from lube.types import Array, Pair
 
 _LEVELS = np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 4001))
 """Correlations at which places of a surface are counted."""
@@ -81,6 +92,54 @@ def persistent_part(probability: float, lags: Array, common: Array, recurring: A
         for part in (np.reshape(recurring, (-1, 1)), 1.0)
     )
     return np.sum(alone) / whole
+
+
+def slip_ratio(
+    probability: float,
+    lags: Array,
+    common: Array,
+    recurring: Array,
+    passages: Pair,
+    slide_to_roll_ratio: float,
+    perimeters: Pair,
+    turns: float = 1.0,
+) -> float:
+    """Compute the variance of the share of up to a turn, over that of a turn of pure rolling.
+
+    Parameters
+    ----------
+    probability, lags, common, recurring
+        As in `persistent_part`.
+    passages : tuple of float
+        Way d of the rollers while a contact is in the strip, with slip, and without slip, m.
+    slide_to_roll_ratio : float
+        Slide-to-roll ratio.
+    perimeters : tuple of float
+        Perimeters of both rollers, m; a turn of pure rolling is that of the first.
+    turns : float, optional
+        Turns of the roller with the faster surface, 1 at most.
+
+    Returns
+    -------
+    float
+        The ratio.
+    """
+    if slide_to_roll_ratio == 0.0:
+        return 1.0 / turns
+    speeds = surface_speeds(1.0, slide_to_roll_ratio)
+    whole_way = turns * perimeters[int(np.argmax(speeds))] / max(speeds)
+    way = np.append(0.0, np.geomspace(1e-3 * min(passages[0], whole_way), whole_way, 2000))
+    ending = max(1.0 / passages[0] - 1.0 / passages[1], 0.0)
+
+    def rest(way):
+        return np.interp(way, lags, common, right=0.0)
+
+    alike = (1.0 - np.sum(recurring)) * rest(way) * np.exp(-way * ending)
+    alike += sum(part * rest(speed * way) for part, speed in zip(recurring, speeds, strict=True))
+    groups = -np.log1p(-np.clip(probability, 1e-300, 1.0 - 1e-12))
+    rolling = np.trapezoid(np.expm1(groups * common), lags) / perimeters[0]
+    weight = (1.0 - way / whole_way) / whole_way
+    return np.trapezoid(weight * np.expm1(groups * alike), way) / rolling
 
 
 class RecurringContacts:

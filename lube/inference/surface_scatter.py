@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from lube.contact.pair_scatter import RecurringContacts, persistent_part
+from lube.contact.pair_scatter import RecurringContacts, persistent_part, slip_ratio
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
@@ -103,13 +103,14 @@ def surface_scatter(
     def of_record(slip, turns, share, strip):
         if strip is None or np.isnan(share):
             return [np.nan] * len(turns)
-        thinnest = strip.levels(spec).min()
-        part = persistent_part(share, *strip.common(spec, length), recurring.at(thinnest))
-        # With slip contacts pass in a shorter time.
+        contacts = share, *strip.common(spec, length), recurring.at(strip.levels(spec).min())
         passages = [strip.passage_width(spec, length, each) for each in (slip, 0.0)]
-        shorter = passages[0] / passages[1]
-        motion = speed_ratios(slip), spec.points, reach, min(part / shorter, 1.0), drift
-        return [shorter * scatter_ratio(one, *motion) for one in turns]
+        known = *contacts, passages, slip, np.multiply(spec.points, spec.spacing)
+        part = min(persistent_part(*contacts) / slip_ratio(*known), 1.0)
+        motion = speed_ratios(slip), spec.points, reach, part, drift
+        of_turn = (slip_ratio(*known, min(one, 1.0)) for one in turns)
+        later = (scatter_ratio(max(one, 1.0), *motion) for one in turns)
+        return [first * more for first, more in zip(of_turn, later, strict=True)]
 
     found = map(of_record, slips.tolist(), durations, shares, strips)
     return np.reshape(np.transpose(list(found)), turns.shape)

@@ -44,7 +44,7 @@ def test_short_records_scatter_in_inverse_proportion_to_their_length(busy_study)
 def test_slip_shortens_contacts_and_brings_new_alignments(busy_study):
     one = scatter(busy_study, turns=1.0, slide_to_roll_ratio=0.37)
     many = scatter(busy_study, turns=100.0, slide_to_roll_ratio=0.37)
-    assert np.all(one < 1.0) and np.all(many < 0.8 * one) and np.all(many > 0.01)
+    assert np.all(one < 1.0 + 0.5 * 0.37) and np.all(many < 0.8 * one) and np.all(many > 0.01)
     assert many[1] == many[2]  # the same film
     # The effect of either surface alone stays in any number of turns.
     later = scatter(busy_study, turns=10_000.0, slide_to_roll_ratio=0.37)
@@ -79,4 +79,5 @@ def test_contacts_that_the_oil_ends_are_hardly_shorter_with_slip(study, make_spe
     _, film = answered_strip(study, spec, "flat", 0.5, 2.2)
     record = film.expand_dims("record"), np.array([0.3]), np.array([0.5]), np.array([1.0])
     drawn, answered = (surface_scatter(spec, 0.01, *record, gap, 0.0) for gap in (PLAIN, ANSWERED))
-    assert drawn < 0.5 < 0.7 < answered < 1.0
+    # A turn of the faster surface is shorter than one of pure rolling.
+    assert 1.25 * drawn < answered < 1.25
