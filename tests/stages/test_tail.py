@@ -250,11 +250,11 @@ def runs_in(lines, starts, film, window, factor, margin=60, answers=()):
     overlap = first + second - film
     for answer, start in zip(answers, starts, strict=False):
         overlap += answer(start)
-    pieces = np.split(np.arange(points.size), np.flatnonzero(np.diff(overlap > 0.0)) + 1)
-    for piece in pieces:
-        if overlap[piece[0]] > 0.0 and points[piece[-1]] >= 0 and points[piece[0]] < window:
-            breaks = piece.size**3 < factor * overlap[piece].sum()
-            yield set(points[piece].tolist()), bool(breaks)
+    edges = np.flatnonzero(np.diff(overlap > 0.0, prepend=False, append=False))
+    for begin, end in edges.reshape(-1, 2):
+        if points[end - 1] >= 0 and points[begin] < window:
+            breaks = (end - begin) ** 3 < factor * overlap[begin:end].sum()
+            yield set(points[begin:end].tolist()), bool(breaks)
 
 
 @pytest.mark.parametrize("gap", [Gap(), Gap("computed"), Gap("computed", "computed")])
