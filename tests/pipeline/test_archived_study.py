@@ -89,18 +89,18 @@ def test_figures_and_numbers_are_made_again_from_the_zip_alone(archive, tmp_path
 
 
 @pytest.mark.slow
-def test_snakemake_makes_the_same_archive_again_and_verifies_it_each_time(archived, archive):
+def test_snakemake_makes_the_same_archive_again_and_verifies_it_each_time(published, archive):
     first = fingerprint(archive.with_suffix(".zip"))
-    archived.run("archive", "--forcerun", "archive")
+    published.run("archive", "--forcerun", "archive")
     assert fingerprint(archive.with_suffix(".zip")) == first
-    before = archived.snapshot()
-    assert "results/smoke/archive/smoke: nothing wrong" in archived.run("verify")
-    made = dict(archived.snapshot().items() - before.items())
+    before = published.snapshot()
+    assert "results/smoke/archive/smoke: nothing wrong" in published.run("verify")
+    made = dict(published.snapshot().items() - before.items())
     assert {path.name for path in made} == {"verify.log"}
     picture = archive / "figures/fig02_film.png"
     whole = picture.read_bytes()
     picture.write_bytes(whole + b"0")
-    verified = archived.snakemake("verify")
+    verified = published.snakemake("verify")
     picture.write_bytes(whole)
     assert verified.returncode != 0
     assert "Wrong: figures/fig02_film.png: changed" in verified.stdout
