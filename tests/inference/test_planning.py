@@ -174,7 +174,7 @@ def test_slopes_of_surfaces_are_those_between_independent_samples(thick, weak, p
     ends = []
     for number, times in enumerate((0.9, 1.1)):
         end = films.assign(film_thickness=films.film_thickness * times)
-        found = surface_contact(spec, LENGTH, end, weak, 20 + number)
+        found = surface_contact(spec, LENGTH, end, weak, 20 + number, fewer=2)
         ends.append(found["breakthrough_probability"].values)
     expected = np.log(ends[1] / ends[0]) / np.log(1.1 / 0.9)
     np.testing.assert_allclose(planned[0].by_film, expected, rtol=0.08)
