@@ -11,6 +11,7 @@ from lube.contact.surface_strip import strip_films
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.study.oil_properties import lubricant_table
+from lube.surfaces.rough_surface import field
 
 
 def answered_strip(study, spec, film_shape, slip, ratio):
@@ -33,7 +34,7 @@ class Unchanged:
 
     def heights(self, waves):
         """Make the heights of some columns, given the waves of both surfaces."""
-        heights = np.fft.irfft2(sum(waves), self._surface.points)
+        heights = field(sum(waves), self._surface.points)
         return lambda column, width: heights[:, column : column + width]
 
 
@@ -54,7 +55,7 @@ class Filtered:
         self._surface, half_width = surface, film["contact_half_width"].item()
         column = np.arange(strip.films(surface.spacing[1]).size)
         position = (strip.begin + surface.spacing[1] * (column + 0.5)) / half_width
-        rows, columns = surface.points
+        rows, columns = surface.coarse
         numbers = np.fft.fftfreq(rows, 1.0 / rows), np.arange(columns // 2 + 1)
         down, along = np.meshgrid(*numbers, indexing="ij")
         inverse = np.hypot(down / surface.sides[0], along / surface.sides[1])
@@ -84,14 +85,17 @@ class Filtered:
     def heights(self, waves):
         """Make the heights of some columns, given the waves of both surfaces."""
         shape = self._surface.points
-        heights = np.fft.irfft2(sum(waves), shape)
-        changed_rows, first = np.unique(self._changed[0], return_index=True)
+        heights = field(sum(waves), shape)
+        rows, first = np.unique(self._changed[0], return_index=True)
+        changed_rows = np.where(
+            rows < self._surface.coarse[0] / 2, rows, rows - self._surface.coarse[0]
+        )
 
         def across(column, width):
             added = np.zeros((shape[0], width), complex)
             for own, answer in zip(waves, self._answers(column, width), strict=True):
                 added[changed_rows] += np.add.reduceat(own[self._changed][:, None] * answer, first)
-            added = np.fft.ifft(added, axis=0).real / shape[1]
+            added = np.fft.ifft(added, axis=0, norm="forward").real
             return heights[:, column : column + width] + added
 
         return across

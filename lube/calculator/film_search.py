@@ -220,7 +220,7 @@ class FilmSearch:
             weaker = self._weaker(table, own)
             found = surface_contact(spec, length, table, layer, seed, self._gap, weaker=weaker)
             limits = [found[f"breakthrough_probability{end}"].values for end in LIMITS]
-            is_seen = np.nanmax(limits[0]) >= self._share
+            is_seen = (limits[0] >= self._share).any()
             if is_seen or ratios[0] < LAMBDA_RATIOS[0] or ratios[0] in ends:
                 return table, limits
             around = around * AROUND[0]  # the layer of most contacts holds

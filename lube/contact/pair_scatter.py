@@ -26,7 +26,7 @@ variance that new alignments do not average out follows from c(s) with :math:`n_
 import numpy as np
 import scipy
 
-from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.rough_surface import field, rough_surface
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array
 
@@ -98,8 +98,7 @@ class RecurringContacts:
         edges = np.concatenate([[-2.0], 0.5 * (_LEVELS[1:] + _LEVELS[:-1]), [2.0]])
         self._counts = []
         for part in parts:
-            variances = surface.variances * part
-            correlation = scipy.fft.irfft2(variances, surface.points, norm="forward")
+            correlation = field(surface.variances * part, surface.points)
             self._counts.append(np.histogram(correlation / surface.rms**2, edges)[0])
 
     def at(self, film: float) -> Array:

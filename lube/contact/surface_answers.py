@@ -11,7 +11,7 @@ import scipy.fft
 from lube.contact.waves import FINER, PRECISION, STEEPNESS, Answer, expanded
 from lube.ehl.response import at_wavelengths
 from lube.kernels.areal import Answered
-from lube.surfaces.rough_surface import Surface, on_coarser_grid
+from lube.surfaces.rough_surface import Surface
 from lube.types import Array, Pair
 
 FINER_ANGLES = 3
@@ -167,8 +167,9 @@ class AnsweredStrip:
         nodes = np.arange(((columns - 1) >> self.shift) + 2) << self.shift
         position = begin + nodes * surface.spacing[1]
         self._shapes = [one.at(position / one.half_width) for one in self.answers]
-        # The waves that the oil changes: their places among those of the coarser grid.
-        halves = [(number - 1) // 2 for number in self.points]
+        # The waves that the oil changes: their places among those of the surface.
+        coarser = zip(self.points, surface.coarse, strict=True)
+        halves = [(min(both) - 1) // 2 for both in coarser]
         down = np.arange(-halves[0], halves[0] + 1)
         down, along = np.meshgrid(down, np.arange(halves[1] + 1), indexing="ij")
         units = [2.0 * np.pi / side for side in surface.sides]
@@ -217,12 +218,12 @@ class AnsweredStrip:
         return np.einsum("prd,pdktc->ktrc", along, of_waves, optimize=True)
 
     def of_waves(self, waves: list[Array]) -> Answered:
-        """Filter the long waves of drawn surfaces, on the coarser grid of the nodes.
+        """Filter the waves of drawn surfaces, on the coarser grid of the nodes.
 
         Parameters
         ----------
         waves : list of numpy.ndarray
-            Long waves as from `Surface.draw`, of the sum of both surfaces if the answers are alike,
+            Waves as from `Surface.draw`, of the sum of both surfaces if the answers are alike,
             else of each surface.
 
         Returns
@@ -230,13 +231,13 @@ class AnsweredStrip:
         Answered
             For `lube.kernels.areal`.
         """
-        shape, fields = self.points, []
+        rows, columns = self.points
+        changed, fields = np.zeros((rows, columns // 2 + 1), np.complex64), []
         for own, filters in zip(waves, self._filters, strict=True):
-            coarser = on_coarser_grid(own, self.points)
             for each in filters.T:
-                changed = np.zeros_like(coarser)
-                changed[self._down, self._along] = coarser[self._down, self._along] * each
-                fields.append(np.pad(scipy.fft.irfft2(changed, shape), (0, 1), mode="wrap"))
+                changed[self._down, self._along] = own[self._down, self._along] * each
+                rough = scipy.fft.irfft2(changed, self.points, norm="forward")
+                fields.append(np.pad(rough, (0, 1), mode="wrap"))
         shapes = np.hstack(self._shapes).astype(np.float32)
         first = self._first_lag
         # For another layout in memory Numba would compile the kernels once more.

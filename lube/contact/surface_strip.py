@@ -231,21 +231,20 @@ def _contacts(spec, strips, changed, sharp, wanted, length, seeds, threads):
     certain = expected[0] > MANY
     found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
 
-    def sample(surface, finest, some, certain):
+    def sample(surface, some, certain):
         own = [changed[point] for point in some]
         choices = length, seeds, threads
-        sampled = _sampled(spec, surface, finest, own, certain, sharp[some], *choices)
+        sampled = _sampled(spec, surface, own, certain, sharp[some], *choices)
         for name, values in sampled.items():
             found[name][some] = values
 
     for surface, alike in _on_alike_grids(spec, strips):
-        finest = _finest(surface, [strips[point] for point in alike])
         some = alike[wanted[alike]]
         if some.size:
-            sample(surface, finest, some, certain[some])
+            sample(surface, some, certain[some])
         holds = certain[some] & (found["breakthrough_probability"][some] < CERTAIN)
         if holds.any():  # few strips do not tell how often the layer breaks
-            sample(surface, finest, some[holds], np.zeros(holds.sum(), bool))
+            sample(surface, some[holds], np.zeros(holds.sum(), bool))
     perimeter = spec.points[0] * spec.spacing
     found["pair_deviation"] = np.full(len(strips), np.nan)
     for point in np.flatnonzero(wanted):
@@ -296,17 +295,10 @@ def smallest_contacts(spec: LineSpecLike, strips: Sequence[StripFilm]) -> Array:
     return 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
 
 
-def _finest(surface, strips):
-    """Points along the sides of the finest grid of nodes of some strips."""
-    shifts = [strip.answers[0].shift(surface.spacing[1]) for strip in strips if strip.answers]
-    return tuple(number >> min(shifts) for number in surface.points) if shifts else (1, 1)
-
-
-def _sampled(spec, surface, finest, strips, certain, sharp, length, seeds, threads=1):
+def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
     """Probabilities and numbers of contacts, with their intervals, shape (strips,) each.
 
-    `certain` says of each strip whether contact is certain there; `finest` is the grid on which
-    the long waves of a surface are drawn, if the oil answers it.
+    `certain` says of each strip whether contact is certain there.
     """
     down, along = surface.spacing
     reach = _reach(spec, down)
@@ -322,7 +314,7 @@ def _sampled(spec, surface, finest, strips, certain, sharp, length, seeds, threa
     covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
 
     def on_one_surface(of_one):
-        return _on_one_surface(of_one, surface, covariances, strips, reach, finest)
+        return _on_one_surface(of_one, surface, covariances, strips, reach)
 
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
@@ -348,13 +340,13 @@ def _reach(spec, spacing):
     return longest, min(math.ceil(AROUND * oblique), longest)
 
 
-def _on_one_surface(seeds, surface, covariances, strips, reach, finest):
+def _on_one_surface(seeds, surface, covariances, strips, reach):
     """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 2)."""
     drawing, choosing = map(np.random.default_rng, seeds)
-    *fields, long_waves = surface.draw(drawing, finest)
+    *fields, waves = surface.draw(drawing)
     fields, chosen, both = tuple(fields), choosing.random((4, STRIPS)), []
     if any(one and len(one.answers) > 1 for *_, one in strips):
-        both = surface.of_each(long_waves, finest, drawing)
+        both = surface.of_each(waves, drawing)
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points[1], BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []
@@ -362,7 +354,7 @@ def _on_one_surface(seeds, surface, covariances, strips, reach, finest):
         rms, shift, by_oil = surface.rms, 0, NO_ANSWER
         if answer:
             rms, shift = rms * answer.rms, answer.shift
-            by_oil = answer.of_waves(both if len(answer.answers) > 1 else [long_waves])
+            by_oil = answer.of_waves(both if len(answer.answers) > 1 else [waves])
         count = FEWER_STRIPS if is_certain else STRIPS
         # Known points of strips, and the weight of each strip. The density of a known height is
         # that of all heights, times exp(-fading overlap): a normal one with another mean.

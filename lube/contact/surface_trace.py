@@ -7,7 +7,6 @@ longest waves. Their joins cut few contacts. The rollers move by one period of t
 import itertools
 
 import numpy as np
-import scipy.fft
 import scipy.ndimage
 import xarray as xr
 
@@ -18,7 +17,7 @@ from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
-from lube.surfaces.rough_surface import UNRESOLVED, on_coarser_grid, rough_surface
+from lube.surfaces.rough_surface import UNRESOLVED, field, rough_surface
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 
@@ -100,14 +99,13 @@ def surface_traces(
 
 def _moving(surface, generator, speeds):
     """Surfaces that move alike: speed, heights, curvatures, and waves; one in pure rolling."""
-    heights, curvatures, waves = surface.draw(generator, surface.points)
+    heights, curvatures, waves = surface.draw(generator)
     if speeds[0] == speeds[1]:
         return [(speeds[0], heights, curvatures, waves)]
     both = []
-    for speed, own in zip(speeds, surface.of_each(waves, surface.points, generator), strict=True):
+    for speed, own in zip(speeds, surface.of_each(waves, generator), strict=True):
         curved = own * surface.curvatures.astype(np.float32)
-        fields = (scipy.fft.irfft2(each, surface.points) for each in (own, curved))
-        both.append((speed, *fields, own))
+        both.append((speed, *(field(each, surface.points) for each in (own, curved)), own))
     return both
 
 
@@ -151,7 +149,7 @@ def _added(surface, moving, answer):
     if answer is None:
         return [None] * len(moving)
     # In pure rolling the film responds to both surfaces alike, and their sum has one answer.
-    by_oil = answer.of_waves([on_coarser_grid(own, answer.points) for *_, own in moving])
+    by_oil = answer.of_waves([own for *_, own in moving])
     fields, shapes, ends = by_oil.fields[:-1, :-1], by_oil.shapes, [0]
     ends += np.cumsum([one.shapes.shape[1] for one in answer.answers]).tolist()
 

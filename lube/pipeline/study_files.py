@@ -220,15 +220,12 @@ class StudyFiles:
         for target in targets:
             asked = self._stages_of(target, figures)
             of_target = [name for name, row in STAGES.items() if row.target == target]
-            if not any(map(self.study.has, of_target)):  # else it makes another file
-                for stage in asked:
-                    if lacking := self.study.lacks(stage):
-                        needed = " and ".join(_NEEDED[name] for name in lacking)
-                        raise LubeError(f"{self.path}: got the target {target}, need {needed}")
-            made = {*asked}.union(*map(self.study.forerunners, asked))
-            if any(
-                "is_uncertain" in STAGES[stage].only_with for stage in made if self.study.has(stage)
-            ):
+            lacking = next(filter(None, map(self.study.lacks, asked)), ())
+            if lacking and not any(map(self.study.has, of_target)):  # else it makes another file
+                needed = " and ".join(_NEEDED[name] for name in lacking)
+                raise LubeError(f"{self.path}: got the target {target}, need {needed}")
+            made = filter(self.study.has, {*asked}.union(*map(self.study.forerunners, asked)))
+            if any("is_uncertain" in STAGES[stage].only_with for stage in made):
                 with located(f"{self.path}: uncertainty"):
                     check_uncertainty(self.study)
 

@@ -71,7 +71,7 @@ def simulated_revolutions(
                 for number, contact in enumerate(contacts, begin):
                     seed = (study.seed, numbers[0], number + 1, turn)
                     point = points.isel(operating_point=number)
-                    yield pair, number, _revolution(contact, point, study, seed)
+                    yield pair, number, recorded(contact, point, study, seed)
             run = begin + some.sizes["operating_point"]
             log.info("simulated rig: pair %d, %d operating points", pair + 1, run)
 
@@ -112,7 +112,34 @@ def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
         yield pair
 
 
-def _revolution(contact, point, study, seed):
+def recorded(
+    contact: Array,
+    point: xr.Dataset,
+    study: Study,
+    seed: tuple[int, ...],
+    time_step: float | None = None,
+) -> "Revolution":
+    """Take contact at an operating point for what the rig records.
+
+    Parameters
+    ----------
+    contact : numpy.ndarray
+        Shape (T,), int32, length of contact at each time step, grid points of the lines.
+    point : xarray.Dataset
+        The operating point.
+    study : Study
+        Its rollers, oil between them and resistivity.
+    seed : tuple of int
+        Seed of the noise.
+    time_step : float, optional
+        Time between two steps, s; by default that in which the faster surface moves by one grid
+        point of the lines.
+
+    Returns
+    -------
+    Revolution
+        Contact with the circuit that it closes.
+    """
     capacitance = film_capacitance(
         point["film_thickness"].item(),
         point["contact_half_width"].item(),
@@ -122,8 +149,8 @@ def _revolution(contact, point, study, seed):
     slip = point["slide_to_roll_ratio"].item()
     speeds = surface_speeds(point["entrainment_speed"].item(), slip)
     spacing = study.line_spec.spacing
-    time_step, resistance = spacing / max(speeds), study.resistivity / spacing
-    return Revolution(contact, time_step, resistance, capacitance, seed)
+    time_step = time_step or spacing / max(speeds)
+    return Revolution(contact, time_step, study.resistivity / spacing, capacitance, seed)
 
 
 def repeats(study: Study, ratios: Ratios) -> bool:

@@ -167,7 +167,7 @@ _ROWS = (
         "contacts of the surfaces along the rollers, at the points of the traces",
         inputs=("film",),
         inputs_with={"surface_response": "gap.is_answered"},
-        values=_LINES | _CONTACT | _named("traces resistivity rollers.length"),
+        values=_LINES | _CONTACT | _named("traces resistivity rig rollers.length"),
         target="areal_contact",
         only_with=(*_SURFACE, "gap.is_on_surfaces"),
         parallel=True,

@@ -6,7 +6,8 @@ import xarray as xr
 from lube.contact.surface_trace import surface_traces
 from lube.grid.film_responses import with_surface_responses
 from lube.grid.operating_points import rows_at
-from lube.physics.electrical import contact_resistance
+from lube.physics.electrical import contact_resistance, resistance_from_voltage
+from lube.rig.simulator import recorded
 from lube.schema import CONTACT_DIMS, label
 from lube.study.study import Study
 from lube.types import Datasets
@@ -30,12 +31,26 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = rows_at(with_surface_responses(inputs), points).transpose("operating_point", ...)
     choices = study.boundary_layer, study.seed, slip, study.gap, threads
     found = surface_traces(study.line_spec, study.rollers.length, film, *choices)
-    resistivity = study.resistivity if study.conducts else np.nan
-    resistance = contact_resistance(found["contact_length"].values, resistivity)
     # All traces have the same speed, and so the same times.
     times = found["step"].values / film["entrainment_speed"].values[0]
     levels = {name: ("operating_point", film[name].values) for name in CONTACT_DIMS}
     found = found.assign_coords(step=times, **levels).rename(step="time")
-    found["contact_resistance"] = ("operating_point", "time"), resistance
     found = found.assign(film[["film_thickness", "contact_half_width", "entrainment_speed"]])
-    return label(found.drop_attrs(), "surface_trace")
+    lengths = found["contact_length"].values
+    resistivity = study.resistivity if study.conducts else np.nan
+    resistance = contact_resistance(lengths, resistivity)
+    found["contact_resistance"] = ("operating_point", "time"), resistance
+    known = np.flatnonzero(np.isfinite(lengths).all(axis=1)) if study.conducts else ()
+    logged = {number: _logged(study, found.isel(operating_point=number)) for number in known}
+    unknown = np.full_like(next(iter(logged.values()), np.zeros(1)), np.nan)
+    read = [logged.get(number, unknown) for number in range(len(points))]
+    found["read_resistance"] = ("operating_point", "rig_time"), read
+    times = np.arange(unknown.size) / study.rig.sampling_rate
+    return label(found.assign_coords(rig_time=times).drop_attrs(), "surface_trace")
+
+
+def _logged(study, point):
+    """Resistances that the study's rig logs, ohm."""
+    contact = np.rint(point["contact_length"].values / study.line_spec.spacing).astype(np.int32)
+    record = recorded(contact, point, study, (study.seed,), point["time"].values[1])
+    return resistance_from_voltage(record.voltage(study.rig), study.rig)

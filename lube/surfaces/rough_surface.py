@@ -32,6 +32,8 @@ POINTS_PER_CONTACT = 6
 """Grid points across the smallest contacts, unless a side then has more than `LARGE` points."""
 LARGE, LARGEST = 4096, 8192
 """Most points along a side to which the grid is refined for small contacts, and most allowed."""
+POINTS_FOR_WAVES = 2.5
+"""Grid points in the shortest wavelength that are enough to have all waves."""
 SIMILAR, DIRECTIONS = 1.08, 16
 """Classes of waves: ratio of the longest to the shortest wavelength in a class, and number of
 directions. With far more of them the contacts that theory expects change by 0.2 %."""
@@ -51,14 +53,16 @@ class Surface:
         Distance of neighbouring rows, and of neighbouring points in a row, m.
     points : tuple of int
         Rows M, and points N in a row.
+    coarse : tuple of int
+        Rows m, and points n in a row, of a coarser grid that has all waves, too.
     rms : float
         Rms height, height steps.
     first_part : numpy.ndarray
-        Shape (M, N // 2 + 1), part of the variance of each wave that is the first roller's.
+        Shape (m, n // 2 + 1), part of the variance of each wave that is the first roller's.
     variances : numpy.ndarray
-        Shape (M, N // 2 + 1), variance of the heights by each wave, squared height steps.
+        Shape (m, n // 2 + 1), variance of the heights by each wave, squared height steps.
     curvatures : numpy.ndarray
-        Shape (M, N // 2 + 1), mean curvature of each wave over its height, 1/m^2.
+        Shape (m, n // 2 + 1), mean curvature of each wave over its height, 1/m^2.
     is_mirrored : bool
         Whether the surface is alike in both directions along the rollers; not if it has a lay at
         an angle.
@@ -69,6 +73,7 @@ class Surface:
 
     spacing: tuple[float, float]
     points: tuple[int, int]
+    coarse: tuple[int, int]
     rms: float
     first_part: Array
     variances: Array
@@ -81,42 +86,33 @@ class Surface:
         """Lengths along the rollers and along rolling, m."""
         return self.points[0] * self.spacing[0], self.points[1] * self.spacing[1]
 
-    def draw(
-        self, generator: np.random.Generator, coarser: tuple[int, int] = (1, 1)
-    ) -> tuple[Array, Array, Array]:
+    def draw(self, generator: np.random.Generator) -> tuple[Array, Array, Array]:
         """Draw a realisation.
 
         Parameters
         ----------
         generator : numpy.random.Generator
             Source of randomness.
-        coarser : tuple of int, optional
-            Points of a coarser grid, on which the long waves are wanted too.
 
         Returns
         -------
         heights, curvatures : numpy.ndarray
             Shape (M, N) each, float32, height steps and height steps per square metre. The
             curvature is the mean of those in two directions, positive at summits.
-        long_waves : numpy.ndarray
-            Fourier coefficients of the heights on the coarser grid, as from `scipy.fft.rfft2`.
+        waves : numpy.ndarray
+            Fourier coefficients of the heights, shape (m, n // 2 + 1), complex64.
         """
-        noise = generator.standard_normal(self.points, dtype=np.float32)
-        waves = scipy.fft.rfft2(noise)
-        waves *= _amplitudes(self.points, self.variances)
-        heights, long_waves = scipy.fft.irfft2(waves, self.points), on_coarser_grid(waves, coarser)
-        waves *= self.curvatures.astype(np.float32)
-        return heights, scipy.fft.irfft2(waves, self.points, overwrite_x=True), long_waves
+        waves = self._waves(generator, self.variances)
+        curved = waves * self.curvatures.astype(np.float32)
+        return field(waves, self.points), field(curved, self.points), waves
 
-    def of_each(self, waves: Array, points: Pair, generator: np.random.Generator) -> list[Array]:
+    def of_each(self, waves: Array, generator: np.random.Generator) -> list[Array]:
         """Divide drawn waves among the surfaces of both rollers.
 
         Parameters
         ----------
         waves : numpy.ndarray
-            Long waves from `draw`.
-        points : tuple of int
-            Points of their grid.
+            Waves from `draw`.
         generator : numpy.random.Generator
             Source of randomness.
 
@@ -126,12 +122,16 @@ class Surface:
             Waves of the first and of the second surface, which are independent. Their sum is
             `waves`.
         """
-        part, variances = (_long_waves(each, points) for each in (self.first_part, self.variances))
+        part = self.first_part
         # The first is the mean that the sum leaves to expect, and a part independent of the sum.
-        noise = scipy.fft.rfft2(generator.standard_normal(points, dtype=np.float32))
-        noise *= _amplitudes(points, part * (1.0 - part) * variances)
-        first = part.astype(np.float32) * waves + noise
+        independent = self._waves(generator, part * (1.0 - part) * self.variances)
+        first = part.astype(np.float32) * waves + independent
         return [first, waves - first]
+
+    def _waves(self, generator, variances):
+        """Draw independent waves of these variances."""
+        noise = generator.standard_normal(self.coarse, dtype=np.float32)
+        return scipy.fft.rfft2(noise, norm="ortho") * np.sqrt(variances).astype(np.float32)
 
     def covariances(self, before: int, after: int, columns: int) -> Iterator[Array]:
         """Covariance of a height with heights and with curvatures around it.
@@ -150,40 +150,33 @@ class Surface:
         """
         rows = np.arange(-before, after + 1)[:, None]
         for factor in (1.0, self.curvatures):
-            around = scipy.fft.irfft2(self.variances * factor, self.points, norm="forward")
+            around = field(self.variances * factor, self.points)
             yield (around[rows, np.arange(1 - columns, columns)] / self.rms**2).astype(np.float32)
 
 
-def on_coarser_grid(waves: Array, points: tuple[int, int]) -> Array:
-    """Fourier coefficients of the same surface on a coarser grid, without waves too short for it.
+def field(waves: Array, points: tuple[int, int]) -> Array:
+    """Sum waves on a grid at least as fine as the coarsest that has them all.
 
     Parameters
     ----------
     waves : numpy.ndarray
-        Coefficients as from `scipy.fft.rfft2`, shape (M, N // 2 + 1).
+        Fourier coefficients, shape (m, n // 2 + 1), as from `scipy.fft.rfft2` on m by n points with
+        ``norm="forward"``; 0 at the shortest waves of an even number.
     points : tuple of int
-        Points of the coarser grid, as many times fewer in both directions.
+        Rows M and points N in a row of the grid.
 
     Returns
     -------
     numpy.ndarray
-        Coefficients, shape (points[0], points[1] // 2 + 1).
+        Shape (M, N).
     """
-    return (points[0] / waves.shape[0]) ** 2 * _long_waves(waves, points)
-
-
-def _long_waves(values, points):
-    """Values at the waves that a coarser grid has, 0 at its shortest waves."""
-    found = np.zeros((points[0], points[1] // 2 + 1), values.dtype)
-    half, columns = (points[0] - 1) // 2, (points[1] + 1) // 2
+    half = (waves.shape[0] - 1) // 2
     rows = np.arange(-half, half + 1)
-    found[rows, :columns] = values[rows, :columns]
-    return found
-
-
-def _amplitudes(points, variances):
-    """Amplitudes of waves that are made of white noise."""
-    return math.sqrt(points[0] * points[1]) * np.sqrt(variances).astype(np.float32)
+    # Columns without waves are not transformed.
+    sums = np.zeros((points[0], waves.shape[1]), np.result_type(waves, np.complex64))
+    sums[rows] = waves[rows]
+    sums = scipy.fft.ifft(sums, axis=0, norm="forward", overwrite_x=True)
+    return scipy.fft.irfft(sums, points[1], norm="forward", overwrite_x=True)
 
 
 def longest_waves(spec: LineSpecLike) -> Pair:
@@ -194,6 +187,20 @@ def longest_waves(spec: LineSpecLike) -> Pair:
     ]
     along, across = np.max(waves, axis=0).tolist()
     return across, along
+
+
+def shortest_waves(spec: LineSpecLike) -> Pair:
+    """Shortest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
+    # A cut through a ridge along one side, over its reach along the other.
+    waves = [
+        2.0
+        * math.pi
+        / line.q_max
+        * line.lay_ratio
+        / np.array(extents(line.lay_ratio, line.lay_angle))
+        for line in spec.lines
+    ]
+    return tuple(np.min(waves, axis=0).tolist())
 
 
 def surface_grid(
@@ -217,19 +224,15 @@ def surface_grid(
     DataError
         If the band of wavelengths is too wide for the grid.
     """
-    lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
     sides, spacings = [], []
-    for number, (longest, own) in enumerate(zip(longest_waves(spec), contact, strict=True)):
-        # A cut through a ridge along one side, over its reach along the other.
-        shortest = min(
-            2.0 * math.pi / line.q_max * (lay[0] / extents(*lay)[number])
-            for line, lay in zip(spec.lines, lays, strict=True)
-        )
+    for longest, shortest, own in zip(
+        longest_waves(spec), shortest_waves(spec), contact, strict=True
+    ):
         side, spacing = max(waves * longest, width + longest), shortest / POINTS_PER_WAVE
         spacing = min(spacing, max(own / POINTS_PER_CONTACT, side / LARGE))
         times = side / spacing / LARGEST
         if times > 1.0:
-            lay = ", or shorter ridges" * any(ratio > 1.0 for ratio, _ in lays)
+            lay = ", or shorter ridges" * any(line.lay_ratio > 1.0 for line in spec.lines)
             # The side decreases with the longest wave, unless the contact is too wide for any.
             most = min(side / times / waves, side / times - width) / longest
             own = max(2.0 * math.pi / line.q_min for line in spec.lines)
@@ -282,13 +285,17 @@ def rough_surface(
         multiple * scipy.fft.next_fast_len(math.ceil(side / one / multiple), real=True)
         for side, one in zip(sides, spacing, strict=True)
     )
-    steps = [2.0 * np.pi / (number * one) for number, one in zip(points, spacing, strict=True)]
-    down = steps[0] * np.fft.fftfreq(points[0], 1.0 / points[0])[:, None]
-    along = steps[1] * np.arange(points[1] // 2 + 1)
-    # The first column, and the last of an even number, hold a wave and its mirror image.
-    number = np.full((points[0], along.size), 2)
+    sides = [number * one for number, one in zip(points, spacing, strict=True)]
+    coarse = tuple(
+        scipy.fft.next_fast_len(math.ceil(POINTS_FOR_WAVES * side / shortest), real=True)
+        for side, shortest in zip(sides, shortest_waves(spec), strict=True)
+    )
+    steps = [2.0 * np.pi / side for side in sides]
+    down = steps[0] * np.fft.fftfreq(coarse[0], 1.0 / coarse[0])[:, None]
+    along = steps[1] * np.arange(coarse[1] // 2 + 1)
+    # The first column holds a wave and its mirror image.
+    number = np.full((coarse[0], along.size), 2)
     number[:, 0] = 1
-    number[:, -1] -= 1 - points[1] % 2
     lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
     of_each = []
     for roller, lay in enumerate(lays):
@@ -306,7 +313,8 @@ def rough_surface(
     is_mirrored = all(angle % 90.0 == 0.0 or ratio == 1.0 for ratio, angle in lays)
     mixed = 0.0 if is_mirrored else np.sum(variances * number * along * down)
     diagonal = -int(np.sign(mixed))
-    return Surface(spacing, points, rms, first, variances, curvatures, is_mirrored, diagonal)
+    values = rms, first, variances, curvatures, is_mirrored, diagonal
+    return Surface(spacing, points, coarse, *values)
 
 
 @functools.lru_cache(maxsize=2)

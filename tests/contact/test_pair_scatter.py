@@ -8,7 +8,7 @@ from scipy.stats import multivariate_normal
 
 from lube.contact.pair_scatter import RecurringContacts, persistent_part
 from lube.contact.strip_film import StripFilm, surface_moments
-from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.rough_surface import field, rough_surface
 
 WIDTH, LENGTH = 3e-4, 5e-4
 LINES = {"longest_wavelength": 4e-4, "shortest_wavelength": "3.2 points"}
@@ -34,7 +34,7 @@ def test_recurring_contacts_are_those_of_the_integral(make_spec):
     """By the sum over the grid of the bivariate normal distribution."""
     spec, film = make_spec(20_000, **LINES | {"shortest_wavelength": "8 points"}), 2.0
     surface = rough_surface(spec)
-    correlation = scipy.fft.irfft2(surface.variances, surface.points, norm="forward")
+    correlation = field(surface.variances, surface.points)
     correlation = (correlation / surface.rms**2)[::7, ::7].ravel()
     chance = multivariate_normal.cdf([-film, -film], cov=np.eye(2))
 
@@ -94,9 +94,9 @@ def drawn_rollers(spec, surface):
     both = []
     for seed in range(PAIRED // 10):
         generator = np.random.default_rng(seed)
-        waves = surface.draw(generator, surface.points)[2]
-        of_each = surface.of_each(waves, surface.points, generator)
-        fields = [spec.height_step * scipy.fft.irfft2(own, surface.points) for own in of_each]
+        waves = surface.draw(generator)[2]
+        of_each = surface.of_each(waves, generator)
+        fields = [spec.height_step * field(own, surface.points) for own in of_each]
         begins = range(0, 10 * apart, apart)
         both += [[own[row : row + rows].astype(np.float32) for own in fields] for row in begins]
     return np.swapaxes(both, 0, 1)

@@ -17,7 +17,7 @@ from lube.grid.operating_points import surface_speeds
 from lube.inference.planning import half_widths, on_surfaces, relative_error
 from lube.statistics.curves import contact_curve, film_interval
 from lube.statistics.one_pair import quantile
-from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.rough_surface import field, rough_surface
 
 WIDTH, LENGTH = 3e-4, 5e-4
 SURFACES, PAIRS = 8, 10
@@ -82,26 +82,27 @@ def test_the_share_of_a_revolution_scatters_between_pairs_as_expected(spec, surf
 
 def answered_shares(spec, surface, strip, generator):
     """Share of a revolution in which each pair touches that the oil answers; see `rollers`."""
-    answer, waves = strip.answers[0], surface.draw(generator, surface.points)[2]
+    answer, waves = strip.answers[0], surface.draw(generator)[2]
     films = (strip.films(surface.spacing[1]) / spec.height_step).astype(np.float32)
     position = strip.begin + surface.spacing[1] * (np.arange(films.size) + 0.5)
+    spacing = np.divide(surface.sides, surface.coarse)
     down, along = np.meshgrid(
-        2.0 * np.pi * np.fft.fftfreq(surface.points[0], surface.spacing[0]),
-        2.0 * np.pi * np.fft.rfftfreq(surface.points[1], surface.spacing[1]),
+        2.0 * np.pi * np.fft.fftfreq(surface.coarse[0], spacing[0]),
+        2.0 * np.pi * np.fft.rfftfreq(surface.coarse[1], spacing[1]),
         indexing="ij",
     )
     functions = np.ones((films.size, 1)), answer.at(position / answer.half_width)
     filters = answer.filters_at(np.maximum(along, 1.0).ravel(), down.ravel())
     fields = []
     for own in (1.0, *filters.T.reshape(-1, *along.shape)):
-        field = np.fft.irfft2(waves * own, surface.points).astype(np.float32)
-        fields.append(np.hstack([field, field[:, : films.size]]))
+        rough = field(waves * own, surface.points).astype(np.float32)
+        fields.append(np.hstack([rough, rough[:, : films.size]]))
     functions = np.hstack(functions).astype(np.float32)
     rows, apart = int(LENGTH / surface.spacing[0]), surface.points[0] // PAIRS
     touching = []
     for step in range(0, surface.points[1], 2):
         here = slice(step, step + films.size)
-        gap = sum(field[:, here] * own for field, own in zip(fields, functions.T, strict=True))
+        gap = sum(each[:, here] * own for each, own in zip(fields, functions.T, strict=True))
         tops = (gap > films).any(axis=1)
         touching.append([tops[row : row + rows].any() for row in range(0, PAIRS * apart, apart)])
     return np.mean(touching, axis=0)
@@ -126,13 +127,13 @@ def test_contacts_are_in_the_strip_as_long_as_expected(spec, surface, rollers):
         width = film.passage_width(spec, LENGTH)
         films = film.films(surface.spacing[1])
         extents, numbers = 0.0, 0
-        for heights in rollers[::4]:
+        for heights in rollers[::2]:
             contacts, count = ndimage.label(heights > films.min())
             numbers += count
             if film.has_edges:
                 sides = ndimage.find_objects(contacts)
                 extents += sum(each[1].stop - each[1].start for each in sides) * surface.spacing[1]
-        per_turn = numbers / len(rollers[::4])
+        per_turn = numbers / len(rollers[::2])
         contacts, _ = film.expected(spec, LENGTH, 0.0)
         assert contacts * side / width == pytest.approx(per_turn, rel=0.1)
         if film.has_edges:
@@ -145,12 +146,12 @@ def contacts_in_motion(spec, surface, heights, film, slip):
     `heights` makes the heights in the gap from the waves of both surfaces.
     """
     columns = film.films(surface.spacing[1]) / spec.height_step
-    phase = 2j * np.pi / surface.points[1] * np.arange(surface.points[1] // 2 + 1)
+    phase = 2j * np.pi / surface.points[1] * np.arange(surface.coarse[1] // 2 + 1)
     found = []
     for seed in range(16):
         generator = np.random.default_rng(seed)
-        waves = surface.draw(generator, surface.points)[2]
-        both = surface.of_each(waves, surface.points, generator)
+        waves = surface.draw(generator)[2]
+        both = surface.of_each(waves, generator)
         touching = np.empty((STEPS, surface.points[0], columns.size), bool)
         for step in range(STEPS):
             moved = zip(both, surface_speeds(1.0, slip), strict=True)

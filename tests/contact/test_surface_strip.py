@@ -13,7 +13,7 @@ from lube.grid.gap import Gap
 from lube.stages import film_table
 from lube.stages.tail import pair_probabilities
 from lube.study.oil_properties import lubricant_table
-from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.rough_surface import field, rough_surface
 
 SEED = 2
 SURFACES, FEWER_SURFACES = 180, 80
@@ -109,21 +109,17 @@ def strip_of(spec, film_shape):
 
 def drawn_waves(surface, generator):
     """Waves of both rollers' surfaces."""
-    parts, points = (surface.first_part, 1.0 - surface.first_part), surface.points
     return [
-        np.fft.rfft2(generator.standard_normal(points))
-        * np.sqrt(np.prod(points) * part * surface.variances)
-        for part in parts
+        np.fft.rfft2(generator.standard_normal(surface.coarse), norm="ortho")
+        * np.sqrt(part * surface.variances)
+        for part in (surface.first_part, 1.0 - surface.first_part)
     ]
 
 
 def searched(surfaces, surface, films, sharp, generator):
     """Shares of strips that touch and that break, and their numbers in a strip, on a surface."""
     waves, points = drawn_waves(surface, generator), surface.points
-    across, curvatures = (
-        surfaces.heights(waves),
-        np.fft.irfft2(sum(waves) * surface.curvatures, points),
-    )
+    across, curvatures = surfaces.heights(waves), field(sum(waves) * surface.curvatures, points)
     diagonal = surface.diagonal
     shares, numbers = [], []
     for column in range(0, points[1] - films.size, 40):
@@ -160,8 +156,7 @@ def compare(spec, surfaces, surface, film, count):
     length = (ROWS + 0.5) * surface.spacing[0]
     strips = [film], np.array([False])
     seeds = surface_strip.surface_seeds(SEED, surface_strip.SURFACES)
-    finest = surface_strip._finest(surface, strips[0])
-    found = surface_strip._sampled(spec, surface, finest, *strips, [curvature], length, seeds)
+    found = surface_strip._sampled(spec, surface, *strips, [curvature], length, seeds)
     names = ["geometric_contact_probability", "breakthrough_probability"]
     names += ["contacts", "breakthroughs"]
     for name, values in zip(names, counted.reshape(count, 4).T, strict=True):
@@ -169,7 +164,7 @@ def compare(spec, surfaces, surface, film, count):
         error = np.hypot(np.std(values, ddof=1) / count**0.5, half / 2.0)
         assert abs(found[name].item() - np.mean(values)) < 3.0 * error
         assert error < 0.15 * np.mean(values)
-    assert np.mean(counted[:, 0, 1]) < 0.95 * np.mean(counted[:, 0, 0])  # some do not break
+    assert np.mean(counted[:, 1, 1]) < 0.95 * np.mean(counted[:, 1, 0])  # some do not break
 
 
 @pytest.mark.parametrize("lay", LAYS)

@@ -17,7 +17,7 @@ from lube.grid import film_responses
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
 from lube.study.oil_properties import lubricant_table
-from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.rough_surface import field, rough_surface
 
 LENGTH = 4e-3
 TRACES = 12
@@ -58,14 +58,12 @@ def test_contacts_are_those_of_surfaces_moved_by_hand(study, make_spec, slip, la
     counts, lengths = np.zeros(len(steps)), np.zeros(len(steps))
     for number, size in enumerate(pieces):
         generator = np.random.default_rng(np.random.SeedSequence((3, number)).spawn(9)[8])
-        heights, curvatures, waves = surface.draw(generator, surface.points)
+        heights, curvatures, waves = surface.draw(generator)
         both = [(heights, curvatures), (np.zeros(surface.points),) * 2]
         if slip:
             both = [
-                tuple(
-                    np.fft.irfft2(each * own, surface.points) for own in (1.0, surface.curvatures)
-                )
-                for each in surface.of_each(waves, surface.points, generator)
+                tuple(field(each * own, surface.points) for own in (1.0, surface.curvatures))
+                for each in surface.of_each(waves, generator)
             ]
         for at, step in enumerate(steps):
             moved = [

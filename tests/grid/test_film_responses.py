@@ -81,8 +81,8 @@ def test_waves_of_a_surface_with_a_lay_are_those_of_the_surface_drawn(make_spec,
     weights = _surface_heights(spec, ANGLES, wavelengths)[0]
     surface = rough_surface(spec, waves=12)
     units = [2.0 * np.pi / side for side in surface.sides]
-    down = units[0] * np.fft.fftfreq(surface.points[0], 1.0 / surface.points[0])[:, None]
-    along = units[1] * np.arange(surface.points[1] // 2 + 1)
+    down = units[0] * np.fft.fftfreq(surface.coarse[0], 1.0 / surface.coarse[0])[:, None]
+    along = units[1] * np.arange(surface.coarse[1] // 2 + 1)
     power = surface.variances * surface.first_part * np.where(along > 0.0, 2.0, 1.0)
     power *= spec.height_step**2
     length = 2.0 * np.pi / np.maximum(np.hypot(along, down), units[0])

@@ -5,7 +5,7 @@ import pytest
 
 from lube.contact.strip_film import surface_moments
 from lube.errors import DataError
-from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.rough_surface import field, rough_surface
 from lube.surfaces.synthetic import wave_amplitudes
 
 
@@ -99,34 +99,37 @@ def test_the_surface_is_isotropic(surface):
         assert heights[rows, columns] == pytest.approx(heights[0, distance], abs=0.05)
 
 
-def test_long_waves_are_those_of_the_surface_on_a_coarser_grid(surface):
-    assert surface.points[0] % 3 == 0
-    third = tuple(number // 3 for number in surface.points)
-    heights, _, waves = surface.draw(np.random.default_rng(7), third)
-    all_waves = np.fft.fft2(heights.astype(float))
-    number = np.hypot(*np.meshgrid(*(np.fft.fftfreq(one, 1.0 / one) for one in surface.points)))
-    long = np.fft.ifft2(np.where(number < 10.0, all_waves, 0.0)).real[::3, ::3]
-    down = np.fft.fftfreq(len(waves), 1.0 / len(waves))[:, None]
-    number = np.hypot(down, np.arange(waves.shape[1]))
-    found = np.fft.irfft2(np.where(number < 10.0, waves, 0.0), long.shape)
-    np.testing.assert_allclose(found, long, atol=1e-4 * surface.rms)
+def test_a_field_is_the_sum_of_its_waves(surface):
+    heights, _, waves = surface.draw(np.random.default_rng(7))
+    row, column = 77, 31
+    down = np.fft.fftfreq(surface.coarse[0], 1.0 / surface.coarse[0])[:, None]
+    along = np.arange(waves.shape[1])
+    phase = 2.0 * np.pi * (row * down / surface.points[0] + column * along / surface.points[1])
+    sums = np.where(along, 2.0, 1.0) * waves.astype(complex) * np.exp(1j * phase)
+    assert heights[row, column] == pytest.approx(np.sum(sums).real, abs=1e-3 * surface.rms)
+
+
+@pytest.mark.parametrize("angle", [0.0, 35.0, 90.0])
+def test_the_coarser_grid_has_all_waves(make_spec, angle):
+    surface = rough_surface(make_spec(50_000, lay_ratio=3.0, lay_angle=angle))
+    has_waves = surface.variances > 0.0
+    down = np.abs(np.fft.fftfreq(surface.coarse[0], 1.0 / surface.coarse[0]))
+    assert 2.0 * down[has_waves.any(axis=1)].max() < surface.coarse[0] - 1
+    assert 2.0 * np.flatnonzero(has_waves.any(axis=0)).max() < surface.coarse[1] - 1
 
 
 def test_drawn_waves_are_divided_among_the_rollers_by_their_spectra(make_spec):
     surface = rough_surface(make_spec(50_000, second_own={"hurst_exponent": 0.3}))
-    points, squares = tuple(number // 3 for number in surface.points), []
+    squares = []
     for seed in range(40):
         generator = np.random.default_rng(seed)
-        waves = surface.draw(generator, points)[2]
-        both = surface.of_each(waves, points, generator)
+        waves = surface.draw(generator)[2]
+        both = surface.of_each(waves, generator)
         np.testing.assert_allclose(both[0] + both[1], waves, atol=1e-5 * np.abs(waves).max())
-        first, second = (np.fft.irfft2(each, points) for each in both)
+        first, second = (field(each, surface.points) for each in both)
         squares.append([np.mean(first**2), np.mean(second**2), np.mean(first * second)])
-    number = np.abs(np.fft.fftfreq(surface.points[0], 1.0 / surface.points[0])).astype(int)
-    along = np.arange(surface.points[1] // 2 + 1)
-    half, part = (points[0] - 1) // 2, surface.first_part
-    kept = np.where(along, 2.0, 1.0) * ((number[:, None] <= half) & (along <= half))
-    power = kept * surface.variances
+    part = surface.first_part
+    power = np.where(np.arange(part.shape[1]), 2.0, 1.0) * surface.variances
     expected = [np.sum(power * part), np.sum(power * (1.0 - part)), 0.0]
     error = np.std(squares, axis=0, ddof=1) / 40**0.5
     assert np.all(np.abs(np.mean(squares, axis=0) - expected) < 4.0 * error)
