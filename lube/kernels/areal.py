@@ -150,23 +150,24 @@ def touching_strips(
         variance = one + _along(by_known[0, -answered.first], origin, answered.shift)
         rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
         moved = fields, covariances, reach, places[0][k], places[1][k], origin, rise, oil
-        search = film, sharp, fading, seen, np.int32(2 * k + 1), stack, diagonal
-        _, broken, _ = _row(moved, search, heights, known_row)
-        chosen = 0.0
+        own, others_too = np.int32(2 * k + 1), np.int32(2 * k + 2)
+        search = film, sharp, fading, seen, own, stack, diagonal
+        chosen, breaks, first = _contact(moved, search, known_row, origin)
+        in_row = film, sharp, fading, seen, others_too, stack, diagonal
+        _, broken, _ = _row(moved, in_row, heights, known_row, own)
+        chosen_in_row = 0.0
         for column in range(width):
             overlap = heights[column] - film[column]
             if overlap > 0.0 or column == origin:  # the known point may be rounded to the film
-                chosen += np.exp(-fading[column] * overlap)
-        contact[0] += 1.0 / chosen
-        breakthrough[0] += (broken > 0) / chosen
-        search = film, sharp, fading, seen, np.int32(2 * k + 2), stack, diagonal
-        chosen, breaks, first = _contact(moved, search, known_row, origin)
+                chosen_in_row += np.exp(-fading[column] * overlap)
+        contact[0] += 1.0 / chosen_in_row
+        breakthrough[0] += (breaks or broken > 0) / chosen_in_row
         contacts[0] += 1.0 / chosen
         contacts[1] += breaks / chosen
         if first <= -around:
             continue  # too long a contact to be a first one
         _least_by_block(places[1][k], film, least)
-        others, broken, earliest = _row(moved, search, heights, first)
+        others, broken, earliest = _row(moved, search, heights, first, own)
         # Several contacts that begin in the same row count as one first contact.
         alone, alone_broken = 1 + others, 1 + broken
         if not breaks or earliest < first:
@@ -176,7 +177,7 @@ def touching_strips(
             if _touches(moved, tops, known, film, least, row):
                 alone = 0
                 if alone_broken > 0:
-                    _, broken, _ = _row(moved, search, heights, row)
+                    _, broken, _ = _row(moved, search, heights, row, own)
                     if broken > 0:
                         alone_broken = 0
             if alone > 0:
@@ -240,7 +241,7 @@ def contacts_per_row(
         moved = fields, covariances, reach, places[0][k], places[1][k], origin, unmoved, oil
         search = film, sharp, fading, seen, np.int32(k + 1), stack, diagonal
         for row in range(first, around + 1):
-            contacts, broken, _ = _row(moved, search, heights, row)
+            contacts, broken, _ = _row(moved, search, heights, row, search[4])
             if row > first:  # those of the first row may begin before it
                 counts[0] += contacts
                 counts[1] += broken
@@ -248,8 +249,8 @@ def contacts_per_row(
 
 
 @kernel
-def _row(moved, search, heights, row):
-    """Follow the contacts of a row that were not followed before.
+def _row(moved, search, heights, row, followed):
+    """Follow the contacts of a row that were not followed before, under the same or another mark.
 
     Returns the numbers of new contacts, and of new contacts whose boundary layer breaks, and the
     earliest row of the last ones.
@@ -259,7 +260,8 @@ def _row(moved, search, heights, row):
     contacts, broken, earliest = 0, 0, row
     _fill_row(moved, row, heights)
     for column in range(heights.size):
-        if heights[column] > film[column] and seen[reach + row, column] != mark:
+        before = seen[reach + row, column]
+        if heights[column] > film[column] and before != mark and before != followed:
             _, breaks, first = _contact(moved, search, row, column)
             contacts += 1
             if breaks:
