@@ -33,13 +33,15 @@ settings.load_profile("lube")
 def pytest_collection_modifyitems(items):
     """Put tests of the smoke study first, in one process; the other begins with those without.
 
-    These begin with tests that need no kernel: the smoke study compiles the kernels meanwhile.
+    These begin with tests that need no kernel: the smoke study compiles the kernels meanwhile. The
+    other tests of the workflow, whose files take longest, follow, so that both processes end
+    together.
     """
 
     def rank(item):
         folder = item.path.parent.name
         needs_kernels = folder not in ("ehl", "physics", "recordings", "statistics", "study")
-        return item.path.name != "test_run.py", folder == "pipeline", needs_kernels, item.path
+        return item.path.name != "test_run.py", needs_kernels, folder != "pipeline", item.path
 
     items.sort(key=rank)
 

@@ -26,7 +26,7 @@ MARGIN = 1.0
 """Pixels by which boxes may overlap or stick out: the rounding of glyphs."""
 
 
-def draw(notebook, paths):
+def draw(notebook, paths, stem=None):
     """Run the cells of a figure's notebook on datasets, and return the figure it leaves open.
 
     Parameters
@@ -35,10 +35,13 @@ def draw(notebook, paths):
         The notebook.
     paths : dict
         From the kind of each dataset to its path.
+    stem : Path, optional
+        Path without suffix at which the notebook saves the figure.
     """
     plt.close("all")
     names = {}
     given = {parameter: str(paths[kind]) for parameter, kind in datasets_of(notebook).items()}
+    given["figure"] = stem
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.use("Agg")

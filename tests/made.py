@@ -23,7 +23,7 @@ def with_few_passages():
 @contextlib.contextmanager
 def on_few_surfaces(number=6):
     """Sample contact of surfaces on few strips of few of them, whose waves run at few angles to
-    rolling: where the size of an error is not judged."""
+    rolling, and follow it for few steps: where the size of an error is not judged."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("lube.contact.surface_strip.SURFACES", number)
         patch.setattr("lube.contact.surface_strip.STRIPS", 150)
@@ -31,6 +31,7 @@ def on_few_surfaces(number=6):
         patch.setattr("lube.inference.planning.FEWER", 1)
         patch.setattr("lube.stages.areal.FEWER", 2)
         patch.setattr("lube.grid.film_responses.ANGLES", np.arange(0.0, 91.0, 45.0))
+        patch.setattr("lube.contact.surface_trace.STEPS", 40)
         yield
 
 

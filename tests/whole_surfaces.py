@@ -1,5 +1,7 @@
 """Whole surfaces, as drawn or as the oil answers them, of which any columns can be asked for."""
 
+import functools
+
 import numpy as np
 import xarray as xr
 from scipy.interpolate import NdBSpline, make_interp_spline
@@ -84,20 +86,23 @@ class Filtered:
         """Make the heights of some columns, given the waves of both surfaces."""
         shape = self._surface.points
         heights = field(sum(waves), shape)
-        down, along = self._changed
-        rows, first = np.unique(down, return_index=True)
+        rows, first = np.unique(self._changed[0], return_index=True)
         changed_rows = np.where(
             rows < self._surface.coarse[0] / 2, rows, rows - self._surface.coarse[0]
         )
 
         def across(column, width):
-            at = 2j * np.pi / shape[1] * along[:, None] * (column + np.arange(width))
-            twice = np.where(along, 2.0, 1.0)[:, None] * np.exp(at)
             added = np.zeros((shape[0], width), complex)
-            for own, response in zip(waves, self._responses, strict=True):
-                of_waves = own[self._changed][:, None] * response * twice
-                added[changed_rows] += np.add.reduceat(of_waves, first)
+            for own, answer in zip(waves, self._answers(column, width), strict=True):
+                added[changed_rows] += np.add.reduceat(own[self._changed][:, None] * answer, first)
             added = np.fft.ifft(added, axis=0, norm="forward").real
             return heights[:, column : column + width] + added
 
         return across
+
+    @functools.cache  # noqa: B019 - a surface lives as long as its test
+    def _answers(self, column, width):
+        """What the oil adds at some columns to each wave of unit height, of either roller."""
+        along = self._changed[1][:, None]
+        at = 2j * np.pi / self._surface.points[1] * along * (column + np.arange(width))
+        return [response * np.where(along, 2.0, 1.0) * np.exp(at) for response in self._responses]

@@ -1,5 +1,7 @@
 """Computed films across the contact, at the same positions for all operating points."""
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 
@@ -118,12 +120,23 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
     xarray.DataArray
         Over the dimensions of ``film_thickness`` and film_position, m.
     """
-    profile = film["film_profile"]
-    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+    return shaping(film)(film["film_thickness"])
+
+
+def shaping(film: xr.Dataset) -> Callable[[xr.DataArray], xr.DataArray]:
+    """Return the function that gives a film thickness, m, its shape, as in `shaped_films`."""
+    profile, options = film["film_profile"], {"arithmetic_join": "exact", "keep_attrs": False}
+    with xr.set_options(**options):
         gap = xr.apply_ufunc(hertz_gap, profile["film_position"])
         gap = gap * film["contact_half_width"] ** 2 / film["reduced_radius"]
-        shaped = film["film_thickness"] / film_at_places(film) * (profile - gap) + gap
-    return shaped.transpose(*film["film_thickness"].dims, "film_position")
+        places, above = film_at_places(film), profile - gap
+
+    def shaped(thickness):
+        with xr.set_options(**options):
+            found = thickness / places * above + gap
+        return found.transpose(*thickness.dims, "film_position")
+
+    return shaped
 
 
 def scaled_film(film: xr.Dataset, factor: xr.DataArray) -> xr.Dataset:

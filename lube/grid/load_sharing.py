@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from lube.grid.film_profiles import shaped_films
+from lube.grid.film_profiles import shaping
 from lube.surfaces.contact_pressure import contact_pressure
 
 MOST = 0.95
@@ -39,11 +39,20 @@ def surface_load_share(film: xr.Dataset, spec, has_shape: bool) -> xr.DataArray:
         Over the dimensions of ``film_thickness``. Above 1 where asperities would carry more than
         the load, NaN where the film is not known.
     """
+    return _share_under(film, spec, has_shape)(film["film_thickness"])
+
+
+def _share_under(film, spec, has_shape):
+    """Return the share as a function of the film thickness alone."""
     pressure = partial(contact_pressure, spec, film["reduced_modulus"].item())
-    gap = shaped_films(film) if has_shape else film["film_thickness"]
-    pressures = xr.apply_ufunc(pressure, gap)
-    mean = 0.5 * pressures.integrate("film_position") if has_shape else pressures
-    return 4.0 / np.pi * mean / film["hertz_pressure"]
+    gap_under = shaping(film) if has_shape else lambda thickness: thickness
+
+    def share(thickness):
+        pressures = xr.apply_ufunc(pressure, gap_under(thickness))
+        mean = 0.5 * pressures.integrate("film_position") if has_shape else pressures
+        return 4.0 / np.pi * mean / film["hertz_pressure"]
+
+    return share
 
 
 def share_load(
@@ -69,20 +78,19 @@ def share_load(
     The film is nearly a power of the load on the oil; the power follows from the film at the last
     share found. The width of the contact stays that of the whole load.
     """
-    whole = film["film_thickness"]
+    whole, share_under = film["film_thickness"], _share_under(film, spec, has_shape)
 
     def balanced(power):
         """Share at which the asperities, under the film that it leaves, carry just as much."""
         low, high = xr.zeros_like(whole), xr.full_like(whole, MOST)
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
-            thicker = film.assign(film_thickness=whole * (1.0 - share) ** -power)
-            is_low = surface_load_share(thicker, spec, has_shape) > share
+            is_low = share_under(whole * (1.0 - share) ** -power) > share
             low, high = low.where(~is_low, share), high.where(is_low, share)
         return low.where(whole.notnull())
 
-    share = surface_load_share(film, spec, has_shape).clip(1e-6, 0.5)
+    share = share_under(whole).clip(1e-6, 0.5)
     for _ in range(ROUNDS):
         share = balanced(-np.log(films_at(1.0 - share) / whole) / np.log1p(-share)).clip(1e-6)
     films = films_at(1.0 - share)
-    return films, surface_load_share(film.assign(film_thickness=films), spec, has_shape)
+    return films, share_under(films)

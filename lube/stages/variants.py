@@ -4,6 +4,7 @@ All variants of lines are computed on the same lines, so their ratios are better
 probabilities themselves.
 """
 
+import functools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -112,7 +113,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """
     chosen = {name: variant.of(study) for name, variant in VARIANTS.items()}
     own, spec = chosen[STUDY], study.line_spec
-    films = {each: _film(each, study, inputs) for each in dict.fromkeys(chosen.values())}
+    film_by = functools.cache(functools.partial(_film_by, study, inputs))
+    films = {each: _film(each, study, inputs, film_by) for each in dict.fromkeys(chosen.values())}
     sampled = [
         each
         for each in films
@@ -141,7 +143,16 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     return label(xr.Dataset(table, coordinates), "variants")
 
 
-def _film(variant, study, inputs):
+def _film_by(study, inputs, formula, shape):
+    """Film by another formula, or that shares the load by another shape."""
+    levels = study.rough_rollers, inputs["film"]["force"], inputs["film"]["speed"], [formula]
+    changed = {"with_shape": shape == "computed", "answered_lines": None}
+    changed["slide_to_roll_ratio"] = rolling(study.slips)
+    film = film_at(inputs["lubricant"], *levels, **study.film_model | changed)
+    return film[["film_thickness", "formula_place"]].isel(film_formula=0)
+
+
+def _film(variant, study, inputs, film_by):
     """Film of a variant, in pure rolling or at the study's first slip."""
     film = at_slip(inputs["film"]).isel(film_formula=0).transpose(*POINT_DIMS, ...)
     profile = inputs["film_profile"].transpose(*POINT_DIMS, "film_position")
@@ -153,11 +164,7 @@ def _film(variant, study, inputs):
         film = film.assign(film_thickness=thinner * profile["central_film"])
         film["formula_place"] = "central"
     elif not is_own or (study.load_sharing != "none" and shape != study.film_shape):
-        levels = study.rough_rollers, film["force"], film["speed"], [variant.film]
-        changed = {"with_shape": shape == "computed", "answered_lines": None}
-        changed["slide_to_roll_ratio"] = rolling(study.slips)
-        other = film_at(inputs["lubricant"], *levels, **study.film_model | changed)
-        film = film.assign(other[["film_thickness", "formula_place"]].isel(film_formula=0))
+        film = film.assign(film_by(variant.film, shape))
     film["film_thickness"] = film["film_thickness"].transpose(*POINT_DIMS)
     kind, names = "film_response", VARIABLES
     if variant.is_on_surface and "surface_response" in inputs:

@@ -243,13 +243,13 @@ def merging():
 
 def test_of_two_films_of_a_share_the_thicker_is_named(merging):
     with pytest.raises(LubeError, match=r"share: got 0\.99, which no film has") as error:
-        lube.required_film(merging, "400 N", share=0.99, **RUNS)
+        lube.required_film(merging, "400 N", share=0.99, **FEW)
     words = re.search(r"is (0\.\d+), at a lambda ratio of (.*)", f"{error.value}")
     largest, peak = map(float, words.groups())
     sigma = merging.pair.composite_rms_roughness
     assert peak > 0.2
     for share in (0.998 * largest, 0.8 * largest):
-        found = lube.required_film(merging, "400 N", share=share, **RUNS)
+        found = lube.required_film(merging, "400 N", share=share, **FEW)
         ratio = found["lambda_ratio"].item()
         assert ratio > peak
         films = xr.Dataset(
@@ -259,7 +259,7 @@ def test_of_two_films_of_a_share_the_thicker_is_named(merging):
                 "reduced_modulus": merging.pair.reduced_modulus,
             }
         )
-        contact = ensemble(films, merging, *RUNS.values())["breakthrough_probability_mean"].values
+        contact = ensemble(films, merging, *FEW.values())["breakthrough_probability_mean"].values
         thin, most, there, beyond = contact
         assert beyond < share < most
         assert thin < 0.995 * largest

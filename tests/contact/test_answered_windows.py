@@ -41,8 +41,7 @@ def changed_waves(spec, roller, point, positions):
     """Square amplitudes, wavenumbers and responses of each wave at positions."""
     first, amplitudes = wave_amplitudes(spec, roller)
     points, numbers = spec.points[roller], first + np.arange(amplitudes.size)
-    line = np.zeros(points)
-    plain = PlainAnswer(line, spec.spacing, point.isel(roller=roller), positions)
+    plain = PlainAnswer(points, spec.spacing, point.isel(roller=roller), positions)
     count = plain.numbers[-1] - first + 1
     change = plain.change[:, first - 1 :][:, : amplitudes.size]
     response = np.ones((positions.size, amplitudes.size), complex)

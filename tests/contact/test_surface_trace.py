@@ -20,6 +20,7 @@ from lube.study.oil_properties import lubricant_table
 from lube.surfaces.rough_surface import field, rough_surface
 
 LENGTH = 4e-3
+TRACES = 12
 LAY = {"lay_ratio": 2.0, "lay_angle": 60.0}
 
 
@@ -106,7 +107,7 @@ def test_the_strip_touches_as_often_as_by_sampling(study, make_spec, monkeypatch
     film, layer = films(study, spec, [2.0, 2.3], slip, gap), study.boundary_layer
     strips = strip_films(spec, film, gap)  # the same in all traces
     monkeypatch.setattr(surface_trace, "strip_films", lambda *_: strips)
-    traces = [surface_traces(spec, LENGTH, film, layer, seed, slip, gap) for seed in range(16)]
+    traces = [surface_traces(spec, LENGTH, film, layer, seed, slip, gap) for seed in range(TRACES)]
     found = [each["contacts"].mean("step").values for each in traces]
     touched = [(each["contacts"] > 0.0).mean("step").values for each in traces]
     # On a quarter of the surfaces it is still three times as certain as the mean of the traces.
@@ -114,7 +115,7 @@ def test_the_strip_touches_as_often_as_by_sampling(study, make_spec, monkeypatch
     sampled = surface_contact(spec, LENGTH, film, layer, 1, gap, fewer=fewer)
     for name, values in (("contacts", found), ("geometric_contact_probability", touched)):
         half = 0.5 * (sampled[f"{name}_upper"] - sampled[f"{name}_lower"]).values
-        error = np.hypot(np.std(values, axis=0, ddof=1) / 16**0.5, 0.5 * half)
+        error = np.hypot(np.std(values, axis=0, ddof=1) / TRACES**0.5, 0.5 * half)
         # The ends of the pieces cut some contacts in two.
         allowed = 3.0 * error + 0.03 * sampled[name].values
         assert np.all(np.abs(np.mean(values, axis=0) - sampled[name].values) < allowed)

@@ -74,7 +74,7 @@ def test_answers_to_lines_are_those_to_every_wave(has_shape, point, pair, spec):
     half = int(point["contact_half_width"].item() / spec.spacing)
     window = np.arange(-half, half + 1)
     plain = [
-        PlainAnswer(line, spec.spacing, point.isel(roller=roller), window)
+        PlainAnswer(line.size, spec.spacing, point.isel(roller=roller), window)
         for roller, line in enumerate(pair)
     ]
     square = []
@@ -83,9 +83,9 @@ def test_answers_to_lines_are_those_to_every_wave(has_shape, point, pair, spec):
         places = [surface_position(place, ratio) for ratio in ratios]
         found = lifted(pair, spec, answers, ratios, place, window)
         square.append(
-            [(found[i] - plain[i].lift(places[i])) ** 2 for i in range(2)],
+            [(found[i] - plain[i].lift(pair[i], places[i])) ** 2 for i in range(2)],
         )
-        total = sum(one.lift(at) for one, at in zip(plain, places, strict=True))
+        total = sum(one.lift(*at) for one, *at in zip(plain, pair, places, strict=True))
         assert np.std(total) > 0.1 * composite(spec)
     rms = np.sqrt(np.mean(square, axis=0).sum(axis=0))
     assert rms.mean() < waves.PRECISION * composite(spec)

@@ -26,8 +26,8 @@ NUMBERS = [f"breakthrough_probability{limit}" for limit in LIMITS]
 def of_surfaces(busy_study, **changes):
     """The busy study on few operating points, with surfaces."""
     grid = busy_study.operating_grid.model_copy(update=GRID)
-    changes |= {"contact_model": ("line", "surface"), "film_formulas": ("paper", "computed")}
-    return busy_study.model_copy(update={"operating_grid": grid} | changes)
+    own = {"contact_model": ("line", "surface"), "film_formulas": ("paper", "computed")}
+    return busy_study.model_copy(update={"operating_grid": grid} | own | changes)
 
 
 def at_records(study, inputs, force, temperature=40.0):
@@ -176,7 +176,7 @@ def test_limits_of_other_film_formulas_enclose_their_values_however_rare_contact
 def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_study):
     """A record on the grid, and the same record where the grid lacks its force."""
     choices = {"film_shape": "computed", "roughness_deformation": "computed"}
-    study = of_surfaces(busy_study, **choices)
+    study = of_surfaces(busy_study, **choices, film_formulas=("paper",))
     kinds = "film", "surface_response", "areal"
     with on_few_surfaces(4):
         inputs = made(study, ("lubricant", *kinds))

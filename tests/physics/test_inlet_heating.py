@@ -15,7 +15,7 @@ from lube.physics.inlet_heating import (
     zhu_cheng,
 )
 
-SLIP = np.linspace(0.0, 2.0, 41)
+SLIP = np.linspace(0.0, 2.0, 11)
 MODELS = [name for name in INLET_HEATING if name != "none"]
 everywhere = pytest.mark.parametrize("model", MODELS)
 

@@ -26,19 +26,23 @@ def make_smoke(folder):
 
 
 @pytest.fixture(scope="session")
-def archived(smoke, tmp_path_factory):
-    """A repository with the smoke study archived by Snakemake; not to be changed."""
-    folder = tmp_path_factory.mktemp("archived") / "repository"
-    repository = smoke.copied(folder)
-    said = repository.run("archive")
-    assert "Archive: results/smoke/archive/smoke.zip" in said
-    return repository
+def published(smoke, made_once):
+    """A repository with archive and report of the smoke study, by Snakemake; not to be changed."""
+
+    def make(folder):
+        unfinished = folder.with_name("unpublished")
+        shutil.rmtree(unfinished, ignore_errors=True)
+        said = smoke.copied(unfinished).run("archive", "report")
+        assert "Archive: results/smoke/archive/smoke.zip" in said
+        unfinished.rename(folder)
+
+    return Repository(made_once("published", make))
 
 
 @pytest.fixture(scope="session")
-def archive(archived):
+def archive(published):
     """The smoke study's archive; not to be changed."""
-    return archived.results / "archive/smoke"
+    return published.results / "archive/smoke"
 
 
 @pytest.fixture

@@ -110,6 +110,8 @@ def test_mistakes_in_config_are_refused_as_those_in_a_file():
     assert "seeed: unknown key" in one_line(
         StudyError, study_of_command, [SMOKE], {"name": "mine", "seeed": 3}
     )
+    unnamed = one_line(StudyError, study_of_command, [], {"seed": "3"})
+    assert "name: missing, need one other than 'paper'" in unnamed
 
 
 def test_another_workflow_names_the_study_and_changes_its_values():

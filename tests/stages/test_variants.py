@@ -88,7 +88,8 @@ def test_films_that_share_the_load_do_so_by_their_shape_and_heated(few):
     grid = few.operating_grid.model_copy(update={"force": (100.0,), "temperature": (80.0,)})
     changes = {"load_sharing": "iterated", "inlet_shear_heating": "wilson-sheu-1983"}
     shared = few.model_copy(update={"operating_grid": grid, "realisations": 2} | changes)
-    found = made(shared, KINDS)["variants"]["film_thickness"].squeeze()
+    others = {"contact", "tail", "areal"}
+    found = made(shared, set(KINDS) - others)["variants"]["film_thickness"].squeeze()
     of_shapes = (("flat", "computed, flat"), ("computed", "computed"), ("computed", "complete"))
     for shape, name in of_shapes:
         itself = {"film_shape": shape, "film_formulas": ("computed",)}
