@@ -48,7 +48,7 @@ from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 from lube.types import Array, Values
 
-SURFACES = 16
+SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
 STRIPS = 750
 """Strips on each surface."""
