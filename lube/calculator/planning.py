@@ -130,7 +130,7 @@ def plan(
         windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
         size = sample_size(contact["breakthrough_probability"], windows).ravel()
         found, motion = slopes(spec, table, layer, choices.gap, seed), (ratios, spec.points, reach)
-        ratio = np.array([[scatter_ratio(one, *motion, 1.0, 0.0)] for one in records])
+        ratio = np.array([[scatter_ratio(one, *motion, (1.0, 1.0), 0.0)] for one in records])
     error = relative_error(found.probability, size, ratio[:, None], reading)
     radius = rollers.pair.first.radius
     force, speed, temperature = conditions(force, speed, temperature, radius)

@@ -71,7 +71,7 @@ def pair_deviation(probability: float, lags: Array, common: Array, perimeter: fl
     return np.sqrt(probability * (1.0 - probability) / max(windows, 1.0))
 
 
-def persistent_part(probability: float, lags: Array, common: Array, recurring: Array) -> float:
+def persistent_part(probability: float, lags: Array, common: Array, recurring: Array) -> Array:
     r"""Compute the part of the variance between pairs that new alignments do not average out.
 
     Parameters
@@ -83,15 +83,15 @@ def persistent_part(probability: float, lags: Array, common: Array, recurring: A
 
     Returns
     -------
-    float
-        The part, of both surfaces together.
+    numpy.ndarray, shape (roller,)
+        The part, by either surface.
     """
     groups = -np.log1p(-np.clip(probability, 1e-300, 1.0 - 1e-12))
     alone, whole = (
         np.trapezoid(np.expm1(groups * part * common), lags)
         for part in (np.reshape(recurring, (-1, 1)), 1.0)
     )
-    return np.sum(alone) / whole
+    return alone / whole
 
 
 def slip_ratio(

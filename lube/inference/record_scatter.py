@@ -91,7 +91,7 @@ def record_scatter(
         here = np.flatnonzero((slips == slip) & (turns >= 1.0))
         shares = _one_revolution(study, windows[here], slip, probability[:, here])
         by_slip = _variance_ratio(_variance(shares), variance[here])
-        part = np.minimum(persistent[here] / by_slip, 1.0)
+        part = persistent[:, here] / by_slip
         alone, together = _components(study, slip, turns[here], part)
         ratio[here] = by_slip * (alone + together)
         if of_lines is not None:
@@ -149,12 +149,12 @@ def _components(study, slip, turns, persistent):
     spec = study.line_spec
     reach, ratios = spec.longest_wavelength / spec.spacing, speed_ratios(slip)
     alone, together = np.empty((2, turns.size))
-    for point, (length, part) in enumerate(zip(turns, persistent, strict=True)):
+    for point, (length, part) in enumerate(zip(turns, persistent.T, strict=True)):
         whole, renewed = (
             scatter_ratio(length, ratios, spec.points, reach, kept, study.rig.drift)
-            for kept in (part, 0.0)
+            for kept in (part, np.zeros(2))
         )
-        together[point] = min((1.0 - part) * renewed, whole)
+        together[point] = min(max(1.0 - np.sum(part), 0.0) * renewed, whole)
         alone[point] = whole - together[point]
     return alone, together
 
@@ -201,7 +201,7 @@ def _line_effects(model, study, slips, turns, realisations):
     Returns
     -------
     share : numpy.ndarray
-        This part over the variance in pure rolling, shape (P,).
+        This part over the variance in pure rolling, by either line, shape (2, P).
     effects : numpy.ndarray or None
         Effect of each realisation's lines, up to `MOST_PAIRS`, under films with a shape up to
         `SHAPED_PAIRS`, shape (R, P); None if none were run.
@@ -210,17 +210,17 @@ def _line_effects(model, study, slips, turns, realisations):
     equal = study.line_spec.points[0] == study.line_spec.points[1]
     one_alignment = equal and not slips.any()
     if one_alignment or not (turns > 1.0).any() or realisations < 2:
-        return (np.zeros if one_alignment else np.ones)(ratio.size), None
+        return (np.zeros if one_alignment else np.ones)((2, ratio.size)), None
     most = SHAPED_PAIRS if study.gap.has_shape else MOST_PAIRS
     levels, windows = alignment_windows(model, study)
     in_first, in_second = _crosswise(study, windows, min(realisations, most))
     persistent = persistent_share(in_first, in_second)
-    known = np.isfinite(persistent)
+    known = np.isfinite(persistent).all(axis=0)
     if not known.any():
-        return np.ones(ratio.size), None
+        return np.ones((2, ratio.size)), None
     effects = line_effects(in_first[..., known], in_second[..., known])
-    rows = [np.interp(ratio, levels[known], row) for row in (*effects, persistent[known])]
-    return rows[-1], np.array(rows[:-1])
+    rows = [np.interp(ratio, levels[known], row) for row in (*effects, *persistent[:, known])]
+    return np.array(rows[-2:]), np.array(rows[:-2])
 
 
 def alignment_windows(model: Data, study: Study) -> tuple[Array, ContactWindows]:
@@ -268,7 +268,8 @@ def _pooled(study, windows, count, mean, persistent):
         firsts.append(first)
     log.info("each line paired with %d others: done", pairings - 1)
     mean = (mean + shares / count) / pairings
-    return mean, persistent + (1.0 - persistent) / pairings
+    kept = np.minimum(persistent.sum(axis=0), 1.0)
+    return mean, kept + (1.0 - kept) / pairings
 
 
 def _crosswise(study, windows, count):
