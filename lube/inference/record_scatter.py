@@ -8,8 +8,8 @@ deviates from that mean. The variance of the deviation depends on how the record
 - *Several alignments.* With slip, or rollers of different size, the two lines meet in a new
   alignment in each revolution. The joint effect of the two lines is then averaged out; the effect
   of each line alone, against any other line, persists.
-- *Short records.* Less than one revolution shows only a part of the lines, and the parts differ
-  more than the whole lines.
+- *Short records.* Less than one revolution of either line shows only a part of it, and the parts
+  differ more than the whole lines.
 """
 
 import logging
@@ -43,6 +43,8 @@ PAIRINGS = 4
 """Number of second lines that each first line is paired with for the mean probability."""
 MOST_STRETCHES = 8
 """Largest number of stretches of one realisation that serve as short records."""
+MOST_TURNS = 8.0
+"""Largest number of revolutions that are run for the slower line to pass wholly."""
 ALIGNMENT_RATIOS = np.linspace(1.0, 3.75, 12)
 """Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare. With fewer
 levels interpolation would make the effects of single lines at neighbouring films too alike."""
@@ -87,18 +89,20 @@ def record_scatter(
     variance = _variance(probability)
     persistent, of_lines = _line_effects(model, study, slips, turns, len(probability))
     ratio, deviation = 1.0 / turns, probability - probability.mean(axis=0)
+    whole = np.array([_whole_turns(study, slip) for slip in slips])
     for slip in np.unique(slips):
         here = np.flatnonzero((slips == slip) & (turns >= 1.0))
-        shares = _one_revolution(study, windows[here], slip, probability[:, here])
+        run = _whole_turns(study, slip)
+        shares = _revolutions(study, windows[here], slip, run, probability[:, here])
         by_slip = _variance_ratio(_variance(shares), variance[here])
         part = persistent[:, here] / by_slip
-        alone, together = _components(study, slip, turns[here], part)
+        alone, together = _components(study, slip, turns[here], part, run)
         ratio[here] = by_slip * (alone + together)
         if of_lines is not None:
             shares = combined_deviations(alone, together, of_lines[:, here], shares)
         deviation[: len(shares), here] = shares - shares.mean(axis=0)
         deviation[len(shares) :, here] = np.nan
-    short = (turns < 1.0) & (variance > 0.0)
+    short = (turns < whole) & (variance > 0.0)
     scatter = _short_variance(study, windows[short], slips[short], turns[short], len(probability))
     ratio[short] = np.where(scatter > 0.0, scatter / variance[short], ratio[short])
     mean, error = mean_over_first(probability), np.ones(turns.size)
@@ -120,19 +124,26 @@ def _variance(shares):
 # One alignment
 
 
-def _one_revolution(study, windows, slip, rolling):
-    """Share of every realisation in one revolution with slip, shape (R, P)."""
-    if slip == 0.0 or not windows.size:
+def _whole_turns(study, slip):
+    """Revolutions of the faster line in which all of either moving line passes; at least one."""
+    points, ratios = np.array(study.line_spec.points), np.array(speed_ratios(slip))
+    each = points[ratios > 0.0] / ratios[ratios > 0.0]
+    return min(np.max(each) / points[np.argmax(ratios)], MOST_TURNS)
+
+
+def _revolutions(study, windows, slip, turns, rolling):
+    """Share of every realisation in some revolutions, shape (R, P)."""
+    if (slip == 0.0 and turns == 1.0) or not windows.size:
         return rolling
     shares = np.empty((min(len(rolling), MOST_PAIRS), windows.size))
     for realisation, row in enumerate(shares):
-        row[:] = windows.count(drawn(study, realisation), slip)[:, 1]
+        row[:] = windows.count(drawn(study, realisation), slip, turns)[:, 1]
         log.info("records with slip %g: realisation %d: done", slip, realisation)
     return shares
 
 
 def _variance_ratio(slipping, rolling):
-    """Variance in one revolution with slip over that in rolling, 1 where one of them is 0.
+    """Variance of whole turns over that of one in pure rolling, 1 where one of them is 0.
 
     Slip changes the alignment during the passage of a contact. So there are more and shorter
     contacts, and their share of time scatters less.
@@ -144,14 +155,14 @@ def _variance_ratio(slipping, rolling):
 # Several alignments
 
 
-def _components(study, slip, turns, persistent):
+def _components(study, slip, turns, persistent, run):
     """Scatter ratios due to each line alone, and due to both together, shape (P,) each."""
     spec = study.line_spec
     reach, ratios = spec.longest_wavelength / spec.spacing, speed_ratios(slip)
     alone, together = np.empty((2, turns.size))
     for point, (length, part) in enumerate(zip(turns, persistent.T, strict=True)):
         whole, renewed = (
-            scatter_ratio(length, ratios, spec.points, reach, kept, study.rig.drift)
+            scatter_ratio(length, ratios, spec.points, reach, kept, study.rig.drift, run)
             for kept in (part, np.zeros(2))
         )
         together[point] = min(max(1.0 - np.sum(part), 0.0) * renewed, whole)
@@ -286,13 +297,13 @@ def _crosswise(study, windows, count):
         for other in range(count):
             _, second = drawn(study, other)
             for number, first in zip(numbers, firsts, strict=True):
-                shares = _whole_turns((first, second), windows)
+                shares = _shares_of_each((first, second), windows)
                 in_first[number, other], in_second[number, other] = shares
         log.info("lines %d to %d, paired with all others: done", begin, numbers[-1])
     return in_first, in_second
 
 
-def _whole_turns(pair, windows):
+def _shares_of_each(pair, windows):
     """Shares in a turn of the first and of the second line."""
     first, second = (line.size for line in pair)
     turns = 1.0, second / first
@@ -310,7 +321,7 @@ def _whole_turns(pair, windows):
 
 
 def _short_variance(study, windows, slips, turns, realisations):
-    """Variance between the shares of records of less than one revolution, shape (P,).
+    """Variance between the shares of records of less than a revolution of either line, shape (P,).
 
     It is not in proportion to 1 / turns: a whole line has exactly the amplitudes of the study's
     spectrum, but a part of the line has not, so parts differ more. Therefore stretches of the
@@ -332,6 +343,6 @@ def _short_variance(study, windows, slips, turns, realisations):
 
 def _stretches(pair, slip, turns, windows):
     """Shares of one pair in separate stretches of its lines, a list of arrays of shape (P,)."""
-    count = min(int(1.0 / turns), MOST_STRETCHES)
+    count = np.clip(int(1.0 / turns), 1, MOST_STRETCHES)
     begins = np.arange(count) * revolution(pair, speed_ratios(slip)) // count
     return [windows.count(pair, slip, turns, begin)[:, 1] for begin in begins]

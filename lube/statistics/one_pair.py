@@ -146,9 +146,15 @@ def drift_factor(turns: float, drift: float) -> float:
 
 
 def scatter_ratio(
-    turns: float, ratios: Ratios, points: Points, reach: float, persistent: Pair, drift: float
+    turns: float,
+    ratios: Ratios,
+    points: Points,
+    reach: float,
+    persistent: Pair,
+    drift: float,
+    known: float = 1.0,
 ) -> float:
-    r"""Variance of the share of one pair's record about the mean, over that of one revolution.
+    r"""Variance of the share of one pair's record about the mean, over that of a known record.
 
     The share of one alignment differs between pairs of rollers by an effect of either line alone,
     which new alignments do not average out, and by a joint effect of the two lines, which is drawn
@@ -156,9 +162,9 @@ def scatter_ratio(
 
     .. math:: s_M^2 = s_\infty^2 + \frac{s_1^2 - s_\infty^2}{M}
 
-    Below one revolution both parts grow as 1 / turns. If the roughness drifts, a recurring
-    alignment is less and less the same, and the scatter of its recurrences falls by
-    `drift_factor`.
+    Below the known record, of one revolution or more, both parts grow as 1 / turns. If the
+    roughness drifts, a recurring alignment is less and less the same, and the scatter of its
+    recurrences falls by `drift_factor`.
 
     Parameters
     ----------
@@ -176,6 +182,8 @@ def scatter_ratio(
         effect.
     drift : float
         As in `drift_factor`.
+    known : float, optional
+        Revolutions of the known record, whose variance is :math:`s_1^2`; without drift.
 
     Returns
     -------
@@ -189,8 +197,8 @@ def scatter_ratio(
     >>> f"{scatter_ratio(20, (1.0, 0.9), (10_000, 10_000), 40.0, (0.1, 0.1), 0.0):.2f}"
     '0.28'
     """
-    if turns <= 1.0:
-        return 1.0 / turns
+    if turns <= known:
+        return known / turns
     faster = 0 if ratios[0] == 1.0 else 1
     travel = points[faster] * np.array(ratios)
 
@@ -199,12 +207,15 @@ def scatter_ratio(
         turns_of_each = np.maximum(turns * travel, reach) / points
         return np.sum(persistent * repeat_factor(turns_of_each))
 
-    alignments = distinct_alignments(turns, ratios, points, reach)
-    visits, renewed = turns / alignments, 1.0 - (1.0 - drift) ** alignments
-    together = repeat_factor(visits) / alignments * drift_factor(visits, renewed)
-    by_either = alone(1.0)
+    def together(turns, drift):
+        alignments = distinct_alignments(turns, ratios, points, reach)
+        visits, renewed = turns / alignments, 1.0 - (1.0 - drift) ** alignments
+        return repeat_factor(visits) / alignments * drift_factor(visits, renewed)
+
+    by_either = alone(known)
     later = alone(turns) / max(by_either, 1.0) * drift_factor(turns, drift)
-    return later + max(1.0 - by_either, 0.0) * together
+    joint = together(turns, drift) / together(known, 0.0)
+    return later + max(1.0 - by_either, 0.0) * joint
 
 
 def prediction_limits(
