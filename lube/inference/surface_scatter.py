@@ -106,7 +106,7 @@ def surface_scatter(
         contacts = share, *strip.common(spec, length), recurring.at(strip.levels(spec).min())
         passages = [strip.passage_width(spec, length, each) for each in (slip, 0.0)]
         known = *contacts, passages, slip, np.multiply(spec.points, spec.spacing)
-        part = persistent_part(*contacts) / slip_ratio(*known)
+        part = persistent_part(*contacts) * spec.points[0] / spec.points / slip_ratio(*known)
         motion = speed_ratios(slip), spec.points, reach, part, drift
         of_turn = (slip_ratio(*known, min(one, 1.0)) for one in turns)
         later = (scatter_ratio(max(one, 1.0), *motion) for one in turns)

@@ -14,6 +14,7 @@ from lube.contact.pair_scatter import (
 )
 from lube.contact.strip_film import StripFilm, surface_moments
 from lube.grid.discretise import speed_ratios
+from lube.statistics.one_pair import repeat_factor
 from lube.surfaces.rough_surface import field, rough_surface
 
 WIDTH, LENGTH = 3e-4, 5e-4
@@ -137,6 +138,19 @@ def test_slip_that_hardly_is_one_changes_nothing(make_spec):
         one = slip_ratio(*contacts, (passage, passage), slip, (0.3, 0.3))
         assert one == pytest.approx(1.0, abs=0.005)
     assert slip_ratio(*contacts, (passage, passage), 0.0, (0.3, 0.3), 0.25) == 4.0
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.5])
+def test_a_small_roller_shows_its_own_contacts_again_in_each_of_its_turns(make_spec, slip):
+    """If only one of the two is rough, the share is that of some turns of this one."""
+    spec = make_spec(50_000, **LINES)
+    film = StripFilm.flat(3.0 * np.sqrt(surface_moments(spec).height), 0.5 * WIDTH)
+    contacts, passage = (0.3, *film.common(spec, LENGTH)), film.passage_width(spec, LENGTH)
+    motion = (passage, passage), slip, (0.6, 0.1)
+    first, second = (slip_ratio(*contacts, np.eye(2)[roller], *motion) for roller in (0, 1))
+    turns = 6.0 * speed_ratios(slip)[1]
+    assert first == pytest.approx(1.0, rel=0.02)
+    assert second == pytest.approx(6.0 * repeat_factor(turns), rel=0.02)
 
 
 def drawn_rollers(spec, surface):

@@ -59,6 +59,14 @@ def test_rollers_of_different_size_meet_in_new_alignments(busy_study):
     assert np.all(scatter(smooth, turns=50.0) > 0.8)
 
 
+def test_a_small_rough_roller_scatters_as_its_own_turns_do(busy_study):
+    """The other is nearly smooth, so that every turn of the small one is alike."""
+    small = with_rollers(busy_study, radius=0.0117, rms_roughness=2e-6)
+    larger = np.divide(*small.line_spec.points)
+    for turns in (1.0, 50.0):
+        np.testing.assert_allclose(scatter(small, turns=turns), larger, rtol=0.1)
+
+
 def test_a_film_that_is_not_known_has_no_scatter(busy_study):
     experiment = experiment_of(SHARES, np.array([400.0, 1600.0, 1600.0]), 100.0, 60.0)
     films = study_films_at_records(busy_study, experiment).isel(film_formula=0)
