@@ -71,6 +71,26 @@ def pair_deviation(probability: float, lags: Array, common: Array, perimeter: fl
     return np.sqrt(probability * (1.0 - probability) / max(windows, 1.0))
 
 
+def turn_ratio(
+    probability: float, lags: Array, common: Array, recurring: Array, perimeters: Pair
+) -> float:
+    """Compute the variance of a turn of pure rolling, over that of equal rollers.
+
+    Parameters
+    ----------
+    probability, lags, common, recurring
+        As in `persistent_part`.
+    perimeters : tuple of float
+        As in `slip_ratio`.
+
+    Returns
+    -------
+    float
+        The ratio.
+    """
+    return slip_ratio(probability, lags, common, recurring, lags[[-1, -1]], 0.0, perimeters)
+
+
 def persistent_part(probability: float, lags: Array, common: Array, recurring: Array) -> Array:
     r"""Compute the part of the variance between pairs that new alignments do not average out.
 
@@ -104,7 +124,7 @@ def slip_ratio(
     perimeters: Pair,
     turns: float = 1.0,
 ) -> float:
-    """Compute the variance of the share of up to a turn, over that of a turn of pure rolling.
+    """Compute the variance of the share of up to a turn, over that of rolling of equal rollers.
 
     Parameters
     ----------
