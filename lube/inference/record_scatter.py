@@ -8,8 +8,8 @@ deviates from that mean. The variance of the deviation depends on how the record
 - *Several alignments.* With slip, or rollers of different size, the two lines meet in a new
   alignment in each revolution. The joint effect of the two lines is then averaged out; the effect
   of each line alone, against any other line, persists.
-- *Short records.* Less than one revolution of either line shows only a part of it, and the parts
-  differ more than the whole lines.
+- *Short records.* Less than one revolution shows only a part of the lines, and the parts differ
+  more than the whole lines; so does the part of a slow or long line.
 """
 
 import logging
@@ -89,10 +89,9 @@ def record_scatter(
     variance = _variance(probability)
     persistent, of_lines = _line_effects(model, study, slips, turns, len(probability))
     ratio, deviation = 1.0 / turns, probability - probability.mean(axis=0)
-    whole = np.array([_whole_turns(study, slip) for slip in slips])
-    for slip in np.unique(slips):
-        here = np.flatnonzero((slips == slip) & (turns >= 1.0))
-        run = _whole_turns(study, slip)
+    runs = np.minimum(turns, [_whole_turns(study, slip) for slip in slips])
+    for slip, run in sorted(set(zip(slips[turns >= 1.0], runs[turns >= 1.0], strict=True))):
+        here = np.flatnonzero((slips == slip) & (runs == run))
         shares = _revolutions(study, windows[here], slip, run, probability[:, here])
         by_slip = _variance_ratio(_variance(shares), variance[here])
         part = persistent[:, here] / by_slip
@@ -102,7 +101,7 @@ def record_scatter(
             shares = combined_deviations(alone, together, of_lines[:, here], shares)
         deviation[: len(shares), here] = shares - shares.mean(axis=0)
         deviation[len(shares) :, here] = np.nan
-    short = (turns < whole) & (variance > 0.0)
+    short = (turns < 1.0) & (variance > 0.0)
     scatter = _short_variance(study, windows[short], slips[short], turns[short], len(probability))
     ratio[short] = np.where(scatter > 0.0, scatter / variance[short], ratio[short])
     mean, error = mean_over_first(probability), np.ones(turns.size)
@@ -143,7 +142,7 @@ def _revolutions(study, windows, slip, turns, rolling):
 
 
 def _variance_ratio(slipping, rolling):
-    """Variance of whole turns over that of one in pure rolling, 1 where one of them is 0.
+    """Variance of some turns over that of one in pure rolling, 1 where one of them is 0.
 
     Slip changes the alignment during the passage of a contact. So there are more and shorter
     contacts, and their share of time scatters less.
@@ -321,7 +320,7 @@ def _shares_of_each(pair, windows):
 
 
 def _short_variance(study, windows, slips, turns, realisations):
-    """Variance between the shares of records of less than a revolution of either line, shape (P,).
+    """Variance between the shares of records of less than one revolution, shape (P,).
 
     It is not in proportion to 1 / turns: a whole line has exactly the amplitudes of the study's
     spectrum, but a part of the line has not, so parts differ more. Therefore stretches of the
@@ -343,6 +342,6 @@ def _short_variance(study, windows, slips, turns, realisations):
 
 def _stretches(pair, slip, turns, windows):
     """Shares of one pair in separate stretches of its lines, a list of arrays of shape (P,)."""
-    count = np.clip(int(1.0 / turns), 1, MOST_STRETCHES)
+    count = min(int(1.0 / turns), MOST_STRETCHES)
     begins = np.arange(count) * revolution(pair, speed_ratios(slip)) // count
     return [windows.count(pair, slip, turns, begin)[:, 1] for begin in begins]
