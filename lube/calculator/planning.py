@@ -78,7 +78,8 @@ def plan(
         ``"line"``; or ``"surface"``, as in `lube.contact_probability`, which takes a minute.
     turns : float or sequence of float, optional
         Length of the record, revolutions of the roller with the faster surface. Longer records of
-        equal rollers in pure rolling tell no more than one revolution.
+        equal rollers in pure rolling tell no more than one revolution. Those of lines with slip
+        tell more than is expected here.
     rig : str, optional
         A known rig, such as ``"mtm-ecr"``, whose error in reading the share of a revolution is
         added. By default the share is read exactly. The rig runs with lines, so its error of
@@ -130,7 +131,7 @@ def plan(
         windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
         size = sample_size(contact["breakthrough_probability"], windows).ravel()
         found, motion = slopes(spec, table, layer, choices.gap, seed), (ratios, spec.points, reach)
-        ratio = np.array([[scatter_ratio(one, *motion, 1.0, 0.0)] for one in records])
+        ratio = np.array([[scatter_ratio(one, *motion, (1.0, 1.0), 0.0)] for one in records])
     error = relative_error(found.probability, size, ratio[:, None], reading)
     radius = rollers.pair.first.radius
     force, speed, temperature = conditions(force, speed, temperature, radius)

@@ -30,7 +30,7 @@ two times between which the rollers move by s, and the surfaces by :math:`v_i s 
           + \sum_i \chi_i\, \rho(s\, v_i / v)
 
 A summit of the slower surface stays in the strip for long, and one of a surface at rest for ever,
-where it touches again and again.
+where it touches again and again. One of a small roller returns with each of its turns.
 """
 
 import numpy as np
@@ -71,7 +71,27 @@ def pair_deviation(probability: float, lags: Array, common: Array, perimeter: fl
     return np.sqrt(probability * (1.0 - probability) / max(windows, 1.0))
 
 
-def persistent_part(probability: float, lags: Array, common: Array, recurring: Array) -> float:
+def turn_ratio(
+    probability: float, lags: Array, common: Array, recurring: Array, perimeters: Pair
+) -> float:
+    """Compute the variance of a turn of pure rolling, over that of equal rollers.
+
+    Parameters
+    ----------
+    probability, lags, common, recurring
+        As in `persistent_part`.
+    perimeters : tuple of float
+        As in `slip_ratio`.
+
+    Returns
+    -------
+    float
+        The ratio.
+    """
+    return slip_ratio(probability, lags, common, recurring, lags[[-1, -1]], 0.0, perimeters)
+
+
+def persistent_part(probability: float, lags: Array, common: Array, recurring: Array) -> Array:
     r"""Compute the part of the variance between pairs that new alignments do not average out.
 
     Parameters
@@ -83,15 +103,15 @@ def persistent_part(probability: float, lags: Array, common: Array, recurring: A
 
     Returns
     -------
-    float
-        The part, of both surfaces together.
+    numpy.ndarray, shape (roller,)
+        The part, by either surface.
     """
     groups = -np.log1p(-np.clip(probability, 1e-300, 1.0 - 1e-12))
     alone, whole = (
         np.trapezoid(np.expm1(groups * part * common), lags)
         for part in (np.reshape(recurring, (-1, 1)), 1.0)
     )
-    return np.sum(alone) / whole
+    return alone / whole
 
 
 def slip_ratio(
@@ -104,7 +124,7 @@ def slip_ratio(
     perimeters: Pair,
     turns: float = 1.0,
 ) -> float:
-    """Compute the variance of the share of up to a turn, over that of a turn of pure rolling.
+    """Compute the variance of the share of up to a turn, over that of rolling of equal rollers.
 
     Parameters
     ----------
@@ -124,18 +144,24 @@ def slip_ratio(
     float
         The ratio.
     """
-    if slide_to_roll_ratio == 0.0:
+    if slide_to_roll_ratio == 0.0 and perimeters[0] == perimeters[1]:
         return 1.0 / turns
     speeds = surface_speeds(1.0, slide_to_roll_ratio)
     whole_way = turns * perimeters[int(np.argmax(speeds))] / max(speeds)
-    way = np.append(0.0, np.geomspace(1e-3 * min(passages[0], whole_way), whole_way, 2000))
+    ways = [[0.0], np.geomspace(1e-3 * min(passages[0], whole_way), whole_way, 2000)]
+    for speed, perimeter in zip(speeds, perimeters, strict=True):
+        passed = perimeter * np.arange(1.0, speed * whole_way / perimeter + 1.0)
+        ways += [np.add.outer(passed, side * lags).ravel() / max(speed, 1e-9) for side in (-1, 1)]
+    way = np.unique(np.clip(np.concatenate(ways), 0.0, whole_way))
     ending = max(1.0 / passages[0] - 1.0 / passages[1], 0.0)
 
     def rest(way):
         return np.interp(way, lags, common, right=0.0)
 
     alike = (1.0 - np.sum(recurring)) * rest(way) * np.exp(-way * ending)
-    alike += sum(part * rest(speed * way) for part, speed in zip(recurring, speeds, strict=True))
+    for part, speed, perimeter in zip(recurring, speeds, perimeters, strict=True):
+        moved = speed * way % perimeter
+        alike += part * rest(np.minimum(moved, perimeter - moved))
     groups = -np.log1p(-np.clip(probability, 1e-300, 1.0 - 1e-12))
     rolling = np.trapezoid(np.expm1(groups * common), lags) / perimeters[0]
     weight = (1.0 - way / whole_way) / whole_way

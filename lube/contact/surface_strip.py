@@ -29,7 +29,7 @@ import scipy
 import scipy.special
 import xarray as xr
 
-from lube.contact.pair_scatter import pair_deviation
+from lube.contact.pair_scatter import RecurringContacts, pair_deviation, turn_ratio
 from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments
 from lube.contact.surface_answers import COARSEST, SurfaceAnswer
 from lube.contact.waves import answers_at
@@ -245,11 +245,16 @@ def _contacts(spec, strips, changed, sharp, wanted, length, seeds, threads):
         holds = certain[some] & (found["breakthrough_probability"][some] < CERTAIN)
         if holds.any():  # few strips do not tell how often the layer breaks
             sample(surface, some[holds], np.zeros(holds.sum(), bool))
-    perimeter = spec.points[0] * spec.spacing
+    perimeters = np.multiply(spec.points, spec.spacing)
     found["pair_deviation"] = np.full(len(strips), np.nan)
+    recurring = RecurringContacts(spec) if perimeters[0] != perimeters[1] else None
     for point in np.flatnonzero(wanted):
-        share, common = found["breakthrough_probability"][point], strips[point].common(spec, length)
-        found["pair_deviation"][point] = pair_deviation(share, *common, perimeter)
+        strip, share = strips[point], found["breakthrough_probability"][point]
+        contacts = share, *strip.common(spec, length)
+        found["pair_deviation"][point] = pair_deviation(*contacts, perimeters[0])
+        if recurring is not None:
+            alone = recurring.at(strip.levels(spec).min())
+            found["pair_deviation"][point] *= turn_ratio(*contacts, alone, perimeters) ** 0.5
     return dict(zip(_EXPECTED, expected, strict=True)) | found
 
 

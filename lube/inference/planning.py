@@ -136,7 +136,7 @@ def on_surfaces(
         As from `slopes`, but NaN where no record tells anything. Slopes by the layer are zero where
         hardly any contact holds it.
     sample_size : numpy.ndarray, shape (P,)
-        Effective sample size of a revolution of pure rolling of equal rollers.
+        Effective sample size of a revolution of pure rolling.
     ratios : numpy.ndarray, shape (turns, P)
         Variance of a record's share over that of such a revolution.
     """

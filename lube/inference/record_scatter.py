@@ -9,7 +9,7 @@ deviates from that mean. The variance of the deviation depends on how the record
   alignment in each revolution. The joint effect of the two lines is then averaged out; the effect
   of each line alone, against any other line, persists.
 - *Short records.* Less than one revolution shows only a part of the lines, and the parts differ
-  more than the whole lines.
+  more than the whole lines; so does the part of a slow or long line.
 """
 
 import logging
@@ -43,6 +43,8 @@ PAIRINGS = 4
 """Number of second lines that each first line is paired with for the mean probability."""
 MOST_STRETCHES = 8
 """Largest number of stretches of one realisation that serve as short records."""
+MOST_TURNS = 8.0
+"""Largest number of revolutions that are run for the slower line to pass wholly."""
 ALIGNMENT_RATIOS = np.linspace(1.0, 3.75, 12)
 """Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare. With fewer
 levels interpolation would make the effects of single lines at neighbouring films too alike."""
@@ -87,12 +89,13 @@ def record_scatter(
     variance = _variance(probability)
     persistent, of_lines = _line_effects(model, study, slips, turns, len(probability))
     ratio, deviation = 1.0 / turns, probability - probability.mean(axis=0)
-    for slip in np.unique(slips):
-        here = np.flatnonzero((slips == slip) & (turns >= 1.0))
-        shares = _one_revolution(study, windows[here], slip, probability[:, here])
+    runs = np.minimum(turns, [_whole_turns(study, slip) for slip in slips])
+    for slip, run in sorted(set(zip(slips[turns >= 1.0], runs[turns >= 1.0], strict=True))):
+        here = np.flatnonzero((slips == slip) & (runs == run))
+        shares = _revolutions(study, windows[here], slip, run, probability[:, here])
         by_slip = _variance_ratio(_variance(shares), variance[here])
-        part = np.minimum(persistent[here] / by_slip, 1.0)
-        alone, together = _components(study, slip, turns[here], part)
+        part = persistent[:, here] / by_slip
+        alone, together = _components(study, slip, turns[here], part, run)
         ratio[here] = by_slip * (alone + together)
         if of_lines is not None:
             shares = combined_deviations(alone, together, of_lines[:, here], shares)
@@ -120,19 +123,26 @@ def _variance(shares):
 # One alignment
 
 
-def _one_revolution(study, windows, slip, rolling):
-    """Share of every realisation in one revolution with slip, shape (R, P)."""
-    if slip == 0.0 or not windows.size:
+def _whole_turns(study, slip):
+    """Revolutions of the faster line in which all of either moving line passes; at least one."""
+    points, ratios = np.array(study.line_spec.points), np.array(speed_ratios(slip))
+    each = points[ratios > 0.0] / ratios[ratios > 0.0]
+    return min(np.max(each) / points[np.argmax(ratios)], MOST_TURNS)
+
+
+def _revolutions(study, windows, slip, turns, rolling):
+    """Share of every realisation in some revolutions, shape (R, P)."""
+    if (slip == 0.0 and turns == 1.0) or not windows.size:
         return rolling
     shares = np.empty((min(len(rolling), MOST_PAIRS), windows.size))
     for realisation, row in enumerate(shares):
-        row[:] = windows.count(drawn(study, realisation), slip)[:, 1]
+        row[:] = windows.count(drawn(study, realisation), slip, turns)[:, 1]
         log.info("records with slip %g: realisation %d: done", slip, realisation)
     return shares
 
 
 def _variance_ratio(slipping, rolling):
-    """Variance in one revolution with slip over that in rolling, 1 where one of them is 0.
+    """Variance of some turns over that of one in pure rolling, 1 where one of them is 0.
 
     Slip changes the alignment during the passage of a contact. So there are more and shorter
     contacts, and their share of time scatters less.
@@ -144,17 +154,17 @@ def _variance_ratio(slipping, rolling):
 # Several alignments
 
 
-def _components(study, slip, turns, persistent):
+def _components(study, slip, turns, persistent, run):
     """Scatter ratios due to each line alone, and due to both together, shape (P,) each."""
     spec = study.line_spec
     reach, ratios = spec.longest_wavelength / spec.spacing, speed_ratios(slip)
     alone, together = np.empty((2, turns.size))
-    for point, (length, part) in enumerate(zip(turns, persistent, strict=True)):
+    for point, (length, part) in enumerate(zip(turns, persistent.T, strict=True)):
         whole, renewed = (
-            scatter_ratio(length, ratios, spec.points, reach, kept, study.rig.drift)
-            for kept in (part, 0.0)
+            scatter_ratio(length, ratios, spec.points, reach, kept, study.rig.drift, run)
+            for kept in (part, np.zeros(2))
         )
-        together[point] = min((1.0 - part) * renewed, whole)
+        together[point] = min(max(1.0 - np.sum(part), 0.0) * renewed, whole)
         alone[point] = whole - together[point]
     return alone, together
 
@@ -201,7 +211,7 @@ def _line_effects(model, study, slips, turns, realisations):
     Returns
     -------
     share : numpy.ndarray
-        This part over the variance in pure rolling, shape (P,).
+        This part over the variance in pure rolling, by either line, shape (2, P).
     effects : numpy.ndarray or None
         Effect of each realisation's lines, up to `MOST_PAIRS`, under films with a shape up to
         `SHAPED_PAIRS`, shape (R, P); None if none were run.
@@ -210,17 +220,17 @@ def _line_effects(model, study, slips, turns, realisations):
     equal = study.line_spec.points[0] == study.line_spec.points[1]
     one_alignment = equal and not slips.any()
     if one_alignment or not (turns > 1.0).any() or realisations < 2:
-        return (np.zeros if one_alignment else np.ones)(ratio.size), None
+        return (np.zeros if one_alignment else np.ones)((2, ratio.size)), None
     most = SHAPED_PAIRS if study.gap.has_shape else MOST_PAIRS
     levels, windows = alignment_windows(model, study)
     in_first, in_second = _crosswise(study, windows, min(realisations, most))
     persistent = persistent_share(in_first, in_second)
-    known = np.isfinite(persistent)
+    known = np.isfinite(persistent).all(axis=0)
     if not known.any():
-        return np.ones(ratio.size), None
+        return np.ones((2, ratio.size)), None
     effects = line_effects(in_first[..., known], in_second[..., known])
-    rows = [np.interp(ratio, levels[known], row) for row in (*effects, persistent[known])]
-    return rows[-1], np.array(rows[:-1])
+    rows = [np.interp(ratio, levels[known], row) for row in (*effects, *persistent[:, known])]
+    return np.array(rows[-2:]), np.array(rows[:-2])
 
 
 def alignment_windows(model: Data, study: Study) -> tuple[Array, ContactWindows]:
@@ -268,7 +278,8 @@ def _pooled(study, windows, count, mean, persistent):
         firsts.append(first)
     log.info("each line paired with %d others: done", pairings - 1)
     mean = (mean + shares / count) / pairings
-    return mean, persistent + (1.0 - persistent) / pairings
+    kept = np.minimum(persistent.sum(axis=0), 1.0)
+    return mean, kept + (1.0 - kept) / pairings
 
 
 def _crosswise(study, windows, count):
@@ -285,13 +296,13 @@ def _crosswise(study, windows, count):
         for other in range(count):
             _, second = drawn(study, other)
             for number, first in zip(numbers, firsts, strict=True):
-                shares = _whole_turns((first, second), windows)
+                shares = _shares_of_each((first, second), windows)
                 in_first[number, other], in_second[number, other] = shares
         log.info("lines %d to %d, paired with all others: done", begin, numbers[-1])
     return in_first, in_second
 
 
-def _whole_turns(pair, windows):
+def _shares_of_each(pair, windows):
     """Shares in a turn of the first and of the second line."""
     first, second = (line.size for line in pair)
     turns = 1.0, second / first

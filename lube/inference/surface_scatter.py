@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from lube.contact.pair_scatter import RecurringContacts, persistent_part, slip_ratio
+from lube.contact.pair_scatter import RecurringContacts, persistent_part, slip_ratio, turn_ratio
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
@@ -19,7 +19,7 @@ from lube.types import Array, Pair, Values
 
 
 def revolution_size(spec: LineSpecLike, contact: xr.Dataset) -> Array:
-    """Find the effective sample size of a revolution of pure rolling of equal rollers.
+    """Find the effective sample size of a revolution of pure rolling.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def surface_scatter(
     -------
     numpy.ndarray
         Of the shape of `turns`: variance of the record's share over that of one revolution of pure
-        rolling of equal rollers; NaN where the film is not known.
+        rolling; NaN where the film is not known.
     """
     reach, recurring = spec.longest_wavelength / spec.spacing, RecurringContacts(spec)
     strips = strip_films(spec, films, gap)
@@ -105,12 +105,13 @@ def surface_scatter(
             return [np.nan] * len(turns)
         contacts = share, *strip.common(spec, length), recurring.at(strip.levels(spec).min())
         passages = [strip.passage_width(spec, length, each) for each in (slip, 0.0)]
-        known = *contacts, passages, slip, np.multiply(spec.points, spec.spacing)
-        part = min(persistent_part(*contacts) / slip_ratio(*known), 1.0)
+        perimeters = np.multiply(spec.points, spec.spacing)
+        known, rolling = (*contacts, passages, slip, perimeters), turn_ratio(*contacts, perimeters)
+        part = persistent_part(*contacts) * spec.points[0] / spec.points / slip_ratio(*known)
         motion = speed_ratios(slip), spec.points, reach, part, drift
         of_turn = (slip_ratio(*known, min(one, 1.0)) for one in turns)
         later = (scatter_ratio(max(one, 1.0), *motion) for one in turns)
-        return [first * more for first, more in zip(of_turn, later, strict=True)]
+        return [first * more / rolling for first, more in zip(of_turn, later, strict=True)]
 
     found = map(of_record, slips.tolist(), durations, shares, strips)
     return np.reshape(np.transpose(list(found)), turns.shape)

@@ -227,10 +227,10 @@ def _run_around(moved, point, step):
 
 @inlined
 def _broke_before(moved, start, stop, factor):
-    """Decide whether a boundary layer broke in a range of points one relative step earlier."""
+    """Decide whether a layer broke in points of either line one relative step earlier."""
     broken = False
-    point = start - 1
-    while point < stop:
+    point = start
+    while point <= stop:
         first, after, total = _run_around(moved, point, -1)
         if _overlap(moved, point, -1) > 0.0 and layer_breaks(after - first, total, factor):
             broken = True

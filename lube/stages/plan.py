@@ -121,7 +121,7 @@ def _ratio(study, slip, turns):
     """Variance of a record's share over that of a revolution, if new alignments do not help."""
     spec = study.line_spec
     reach = spec.longest_wavelength / spec.spacing
-    known = speed_ratios(slip), spec.points, reach, 1.0, study.rig.drift
+    known = speed_ratios(slip), spec.points, reach, (1.0, 1.0), study.rig.drift
     # A realisation may be several revolutions long.
     return scatter_ratio(turns, *known) / scatter_ratio(study.revolutions, *known)
 

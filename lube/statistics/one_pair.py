@@ -146,9 +146,15 @@ def drift_factor(turns: float, drift: float) -> float:
 
 
 def scatter_ratio(
-    turns: float, ratios: Ratios, points: Points, reach: float, persistent: float, drift: float
+    turns: float,
+    ratios: Ratios,
+    points: Points,
+    reach: float,
+    persistent: Pair,
+    drift: float,
+    known: float = 1.0,
 ) -> float:
-    r"""Variance of the share of one pair's record about the mean, over that of one revolution.
+    r"""Variance of the share of one pair's record about the mean, over that of a known record.
 
     The share of one alignment differs between pairs of rollers by an effect of either line alone,
     which new alignments do not average out, and by a joint effect of the two lines, which is drawn
@@ -156,9 +162,9 @@ def scatter_ratio(
 
     .. math:: s_M^2 = s_\infty^2 + \frac{s_1^2 - s_\infty^2}{M}
 
-    Below one revolution both parts grow as 1 / turns. If the roughness drifts, a recurring
-    alignment is less and less the same, and the scatter of its recurrences falls by
-    `drift_factor`.
+    Below the known record, of one revolution or more, both parts grow as 1 / turns. If the
+    roughness drifts, a recurring alignment is less and less the same, and the scatter of its
+    recurrences falls by `drift_factor`.
 
     Parameters
     ----------
@@ -170,11 +176,14 @@ def scatter_ratio(
         Points around either roller.
     reach : float
         Distance of two alignments that have no roughness in common, points.
-    persistent : float
-        :math:`s_\infty^2 / s_1^2`, the part of the variance that new alignments do not average out.
-        It has no effect for equal rollers in pure rolling, which keep one alignment.
+    persistent : tuple of float
+        :math:`s_\infty^2 / s_1^2`, the part of the variance that new alignments do not average out,
+        by either line. For equal rollers in pure rolling, which keep one alignment, it has no
+        effect.
     drift : float
         As in `drift_factor`.
+    known : float, optional
+        Revolutions of the known record, whose variance is :math:`s_1^2`; without drift.
 
     Returns
     -------
@@ -185,26 +194,28 @@ def scatter_ratio(
     --------
     A slip of a tenth of the perimeter has ten alignments:
 
-    >>> f"{scatter_ratio(20, (1.0, 0.9), (10_000, 10_000), 40.0, 0.2, 0.0):.2f}"
+    >>> f"{scatter_ratio(20, (1.0, 0.9), (10_000, 10_000), 40.0, (0.1, 0.1), 0.0):.2f}"
     '0.28'
     """
-    if turns <= 1.0:
-        return 1.0 / turns
+    if turns <= known:
+        return known / turns
     faster = 0 if ratios[0] == 1.0 else 1
     travel = points[faster] * np.array(ratios)
-    weights = 1.0 / np.array(points) / np.sum(1.0 / np.array(points))
 
     def alone(turns):
         """Scatter by either line alone; a roller at rest shows the same points all the time."""
         turns_of_each = np.maximum(turns * travel, reach) / points
-        return np.sum(weights * repeat_factor(turns_of_each))
+        return np.sum(persistent * repeat_factor(turns_of_each))
 
-    alignments = distinct_alignments(turns, ratios, points, reach)
-    visits, renewed = turns / alignments, 1.0 - (1.0 - drift) ** alignments
-    together = repeat_factor(visits) / alignments * drift_factor(visits, renewed)
-    by_either = min(persistent * alone(1.0), 1.0)
-    later = alone(turns) / alone(1.0) * drift_factor(turns, drift)
-    return by_either * later + (1.0 - by_either) * together
+    def together(turns, drift):
+        alignments = distinct_alignments(turns, ratios, points, reach)
+        visits, renewed = turns / alignments, 1.0 - (1.0 - drift) ** alignments
+        return repeat_factor(visits) / alignments * drift_factor(visits, renewed)
+
+    by_either = alone(known)
+    later = alone(turns) / max(by_either, 1.0) * drift_factor(turns, drift)
+    joint = together(turns, drift) / together(known, 0.0)
+    return later + max(1.0 - by_either, 0.0) * joint
 
 
 def prediction_limits(
@@ -299,7 +310,7 @@ def standard_error(
 
 
 def persistent_share(in_first: Array, in_second: Array) -> Array:
-    """Part of one alignment's scatter that new alignments do not average out.
+    """Part of one turn's scatter that new alignments do not average out, by either line.
 
     This part is the effect of either line alone, whatever line it is paired with. Each first line
     is paired with each second line, and the effects follow from the analysis of variance of two
@@ -315,28 +326,29 @@ def persistent_share(in_first: Array, in_second: Array) -> Array:
     Returns
     -------
     numpy.ndarray
-        Shape (P,), s_inf^2 / s_1^2, from 0 to 1; NaN where nothing scatters.
+        Shape (2, P), s_inf^2 over s_1^2 in a turn of the first line; NaN where nothing scatters.
 
     Examples
     --------
     >>> first, second = np.array([0.1, 0.2, 0.4]), np.array([0.0, 0.3, 0.1])
     >>> shares = (first[:, None] + second)[..., None]
     >>> persistent_share(shares, shares).round(6)
-    array([1.])
+    array([[0.5],
+           [0.5]])
     """
-    firsts, seconds = in_first.shape[:2]
-    of_first, of_second = in_first.mean(axis=1), in_second.mean(axis=0)
-    together, also_together = _together(in_first), _together(in_second)
-    alone = np.clip(of_first.var(axis=0, ddof=1) - together / seconds, 0.0, None)
-    alone += np.clip(of_second.var(axis=0, ddof=1) - also_together / firsts, 0.0, None)
+    first, passing, together = _effects(in_first)
+    _, second, _ = _effects(in_second)
     with np.errstate(invalid="ignore"):
-        return alone / (alone + together)
+        return np.array([first, second]) / (first + passing + together)
 
 
-def _together(shares):
-    """Variance due to the interaction of two crossed factors, shape (P,)."""
+def _effects(shares):
+    """Variances due to two crossed factors, each alone, and to their interaction, shape (P,)."""
     firsts, seconds = shares.shape[:2]
-    return np.sum(joint_effects(shares) ** 2, axis=(0, 1)) / ((firsts - 1) * (seconds - 1))
+    together = np.sum(joint_effects(shares) ** 2, axis=(0, 1)) / ((firsts - 1) * (seconds - 1))
+    of_first = shares.mean(axis=1).var(axis=0, ddof=1) - together / seconds
+    of_second = shares.mean(axis=0).var(axis=0, ddof=1) - together / firsts
+    return np.clip(of_first, 0.0, None), np.clip(of_second, 0.0, None), together
 
 
 def joint_effects(shares: Array) -> Array:

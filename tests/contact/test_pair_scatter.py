@@ -14,6 +14,7 @@ from lube.contact.pair_scatter import (
 )
 from lube.contact.strip_film import StripFilm, surface_moments
 from lube.grid.discretise import speed_ratios
+from lube.statistics.one_pair import repeat_factor
 from lube.surfaces.rough_surface import field, rough_surface
 
 WIDTH, LENGTH = 3e-4, 5e-4
@@ -59,11 +60,11 @@ def test_recurring_contacts_are_those_of_the_integral(make_spec):
 def test_the_part_is_none_where_no_contact_recurs_and_all_where_all_do():
     lags, common = np.linspace(0.0, 1.0, 50), np.linspace(1.0, 0.0, 50)
     for share in (1e-9, 0.3, 0.95):
-        assert persistent_part(share, lags, common, np.zeros(2)) == 0.0
+        assert not persistent_part(share, lags, common, np.zeros(2)).any()
         whole = persistent_part(share, lags, common, np.array([1.0, 0.0]))
-        assert whole == pytest.approx(1.0)
+        assert whole == pytest.approx([1.0, 0.0])
     rare = persistent_part(1e-9, lags, common, np.array([0.1, 0.2]))
-    assert rare == pytest.approx(0.3)
+    assert rare == pytest.approx([0.1, 0.2])
 
 
 def test_new_alignments_leave_the_scatter_that_theory_says(make_spec):
@@ -88,7 +89,8 @@ def test_new_alignments_leave_the_scatter_that_theory_says(make_spec):
         rest = found - by_first[:, None] - by_second + found.mean()
         together = np.sum(rest**2) / (PAIRED - 1) ** 2
         alone = by_first.var(ddof=1) + by_second.var(ddof=1) - 2.0 * together / PAIRED
-        expected = persistent_part(found.mean(), *film.common(spec, LENGTH), recurring.at(ratio))
+        contacts = found.mean(), *film.common(spec, LENGTH)
+        expected = persistent_part(*contacts, recurring.at(ratio)).sum()
         ratios.append(alone / (alone + together) / expected)
     # By 360 surfaces 0.87, 0.94 and 1.01, each +- 0.05.
     assert np.all((np.array(ratios) > 0.65) & (np.array(ratios) < 1.3))
@@ -136,6 +138,19 @@ def test_slip_that_hardly_is_one_changes_nothing(make_spec):
         one = slip_ratio(*contacts, (passage, passage), slip, (0.3, 0.3))
         assert one == pytest.approx(1.0, abs=0.005)
     assert slip_ratio(*contacts, (passage, passage), 0.0, (0.3, 0.3), 0.25) == 4.0
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.5])
+def test_a_small_roller_shows_its_own_contacts_again_in_each_of_its_turns(make_spec, slip):
+    """If only one of the two is rough, the share is that of some turns of this one."""
+    spec = make_spec(50_000, **LINES)
+    film = StripFilm.flat(3.0 * np.sqrt(surface_moments(spec).height), 0.5 * WIDTH)
+    contacts, passage = (0.3, *film.common(spec, LENGTH)), film.passage_width(spec, LENGTH)
+    motion = (passage, passage), slip, (0.6, 0.1)
+    first, second = (slip_ratio(*contacts, np.eye(2)[roller], *motion) for roller in (0, 1))
+    turns = 6.0 * speed_ratios(slip)[1]
+    assert first == pytest.approx(1.0, rel=0.02)
+    assert second == pytest.approx(6.0 * repeat_factor(turns), rel=0.02)
 
 
 def drawn_rollers(spec, surface):

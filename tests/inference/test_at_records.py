@@ -233,6 +233,24 @@ def test_one_revolution_with_slip_scatters_as_the_realisations_do(busy):
     np.testing.assert_allclose(model["scatter_ratio"][:, 0], slipping / rolling, rtol=1e-9)
 
 
+def test_turns_that_do_not_show_all_of_a_line_scatter_as_those_of_the_realisations(few):
+    """Two turns with two thirds of the second line."""
+    study, film, contact = few
+    experiment = experiment_off_the_grid([0], turns=2.0, slide_to_roll_ratio=1.0)
+    model = model_of_records(experiment, film, contact, study)
+    force, speed, temperature = CONDITIONS[0]
+    oil = lubricant_table(study.lubricants, [temperature])
+    table = film_table(oil, study.rollers, [force], [speed], study.film_formulas)
+    lines = roughness_batch(study.line_spec, study.seed, range(3))
+    one, two = (
+        contact_statistics(lines, table, study.boundary_layer, *run)[PROBABILITY]
+        .var("realisation", ddof=1)
+        .squeeze()
+        for run in (([0.0], 1), ([1.0], 2))
+    )
+    np.testing.assert_allclose(model["scatter_ratio"][:, 0], two / one, rtol=1e-9)
+
+
 def unequal(study):
     second = study.rollers.second.model_copy(update={"radius": 0.04})
     rollers = study.rollers.model_copy(update={"second": second})
@@ -246,6 +264,8 @@ def unequal(study):
         pytest.param(lambda study: study, 0.1, 40, id="slip", marks=pytest.mark.slow),
         # Four turns of the first roller are five of the second: all four alignments.
         pytest.param(unequal, 0.0, 4, id="unequal rollers"),
+        # A turn shows a third of the second line, which scatters far more than the whole.
+        pytest.param(lambda study: study, 1.0, 6, id="much slip"),
     ],
 )
 def test_the_scatter_of_a_long_record_is_that_of_a_literal_run(busy, change, slip, turns):

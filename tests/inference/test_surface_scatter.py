@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from experiments import experiment_of
 from whole_surfaces import answered_strip
 
+from lube.contact.pair_scatter import pair_deviation
+from lube.contact.surface_strip import strip_films, surface_contact
 from lube.grid.gap import PLAIN, Gap
 from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_scatter import surface_scatter
@@ -57,6 +60,23 @@ def test_rollers_of_different_size_meet_in_new_alignments(busy_study):
     assert np.all(found[1] < 0.5 * found[0])
     smooth = with_rollers(unequal, rms_roughness=1e-9)  # then one surface has all the roughness
     assert np.all(scatter(smooth, turns=50.0) > 0.8)
+
+
+def test_a_small_rough_roller_scatters_as_its_own_turns_do(busy_study):
+    """The other is nearly smooth, so that every turn of the small one is alike."""
+    small = with_rollers(busy_study, radius=0.0117, rms_roughness=2e-6)
+    for turns in (1.0, 50.0):
+        np.testing.assert_allclose(scatter(small, turns=turns), 1.0, rtol=0.1)
+    film = {"film_thickness": ("film", [7e-6]), "contact_half_width": 2e-4}
+    given = xr.Dataset(film | {"reduced_modulus": 1e11}), busy_study.boundary_layer, 1
+    found = surface_contact(small.line_spec, 1e-3, *given)
+    share, (strip,) = (
+        found["breakthrough_probability"].item(),
+        strip_films(small.line_spec, given[0], PLAIN),
+    )
+    own = small.line_spec.points[1] * small.line_spec.spacing
+    expected = pair_deviation(share, *strip.common(small.line_spec, 1e-3), own)
+    np.testing.assert_allclose(found["pair_deviation"], expected, rtol=0.05)
 
 
 def test_a_film_that_is_not_known_has_no_scatter(busy_study):

@@ -89,8 +89,9 @@ def test_runs_are_weighed_as_by_a_naive_implementation():
             expected[7:] += weight * np.array([between, gap, sum(range(1, gap + 1))])
         else:
             expected[[2, 6]] += weight * np.array([1.0, overlap.size - mine.stop])
-        before = first[:-1] + second[1:] - film  # its point i is `overlap`'s point i + 1
-        old = range(mine.start - 2, mine.stop - 1)
+        before = first[:-1] + second[1:] - film
+        # Its point i was above the first line's point i, and the second line's i + 1.
+        old = range(mine.start - 1, mine.stop)
         forerunners = (run for run in runs_above(before) if set(run) & set(old))
         new = not any(breaks(before, run) for run in forerunners)
         expected[[3, 5]] += weight * new, new

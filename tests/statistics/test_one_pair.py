@@ -81,7 +81,7 @@ def test_drift_makes_the_turns_a_first_order_series():
 
 
 def test_equal_rollers_in_rolling_repeat_whatever_persists():
-    for persistent in (0.0, 0.3, 1.0):
+    for persistent in ((0.0, 0.0), (0.1, 0.3), (1.0, 1.0)):
         for turns in (0.2, 1.0, 1.5, 3.75, 12.0, 1e6):
             found = scatter_ratio(turns, ROLLING, POINTS, REACH, persistent, 0.0)
             assert found == pytest.approx(repeat_factor(turns))
@@ -98,7 +98,7 @@ CASES = [
 
 def test_the_ratio_of_one_revolution_is_one():
     for case in CASES:
-        for persistent in (0.0, 0.2, 1.0):
+        for persistent in ((0.0, 0.0), (0.1, 0.3), (1.0, 1.0)):
             for drift in (0.0, 0.2):
                 assert scatter_ratio(1.0, *case, REACH, persistent, drift) == pytest.approx(1.0)
 
@@ -107,12 +107,21 @@ def test_new_alignments_average_out_all_but_what_persists():
     """s^2 (M) = s_inf^2 + (s_1^2 - s_inf^2) / M; either line alone is not quite at whole turns."""
     for case, alignments in zip(CASES[1:3], (4, 10), strict=True):
         for turns in (20, 200):
-            found = scatter_ratio(turns, *case, REACH, 0.2, 0.0)
+            found = scatter_ratio(turns, *case, REACH, (0.1, 0.1), 0.0)
             assert found == pytest.approx(0.2 + 0.8 / alignments, rel=0.03)
 
 
+def test_the_part_of_a_line_that_a_turn_shows_scatters_more_and_only_by_its_own_effect():
+    """In a turn of the faster line, a seventh of the slower one passes."""
+    ratios = 1.0, 1.0 / 7.0
+    for persistent, of_joint in (((0.1, 0.0), 0.9), ((0.0, 0.1), 0.3)):
+        found = scatter_ratio(70, ratios, POINTS, REACH, persistent, 0.0)
+        assert found == pytest.approx(0.1 + of_joint / 7, rel=0.01)
+
+
 def test_rollers_whose_roughness_drifts_scatter_less_and_the_more_the_longer():
-    drifting = [scatter_ratio(t, ROLLING, POINTS, REACH, 0.0, 0.1) for t in (1.0, 4.0, 40.0, 400.0)]
+    case = ROLLING, POINTS, REACH, (0.0, 0.0), 0.1
+    drifting = [scatter_ratio(turns, *case) for turns in (1.0, 4.0, 40.0, 400.0)]
     assert drifting[0] == 1.0
     assert (np.diff(drifting) < 0.0).all()
     assert drifting[-1] == pytest.approx(drift_factor(400.0, 0.1))
@@ -180,8 +189,8 @@ def test_the_persistent_share_is_that_of_the_variance_between_pairs():
     of_pair, of_alignment = rng.normal(size=(pairs, 1, 2)), rng.normal(size=(pairs, alignments, 2))
     for share in (0.0, 0.2, 0.7):
         shares = np.sqrt(share) * of_pair + np.sqrt(1.0 - share) * of_alignment
-        assert persistent_share(shares, shares) == pytest.approx(share, abs=0.02)
+        assert persistent_share(shares, shares).sum(axis=0) == pytest.approx(share, abs=0.02)
     shares = np.zeros((5, 4, 2))
-    shares[:, :, 1] = np.arange(5.0)[:, None]  # pairs differ, alignments do not
+    shares[:, :, 1] = np.arange(5.0)[:, None]  # nothing scatters, or first lines alone
     found = persistent_share(shares, shares)
-    assert np.isnan(found[0]) and found[1] == 1.0  # nothing scatters, and all of it persists
+    np.testing.assert_array_equal(found, [[np.nan, 1.0], [np.nan, 0.0]])
