@@ -109,7 +109,7 @@ def test_contact_of_surfaces_is_computed_again_at_points_of_every_level(of_surfa
         result = explain(path, **dict(zip(CONTACT_DIMS, point, strict=True)))
         assert result.differing == []
         assert result.again["geometric_contact_probability"].item() > 0.0
-    for formula, last in (("paper", 15), ("pan-hamrock", 3)):
+    for formula, last in (("paper", 23), ("pan-hamrock", 5)):
         words = in_words(explain(path, film_formula=formula, **POINT))
         for stated in (f"s = 0 to {last}", "spawn(7)[5:]", "0.01 m", "the same bits"):
             assert stated in words
