@@ -255,7 +255,7 @@ def _ranges(members, windows, ratio):
         others = np.delete(members, number, axis=0)
         mean, size = others.mean(axis=0), effective_sample_size(others, windows)
         limits = prediction_limits(mean, size, ratio, len(others))
-        shares = np.clip(mean + np.sqrt(ratio) * (member - mean), 0.0, 1.0)
+        shares = np.clip(member + (np.sqrt(ratio) - 1.0) * (member - mean), 0.0, 1.0)
         rows.append(agreement(mean, *limits, np.where(member * (1.0 - member), shares, member)))
     return pd.DataFrame(rows)[list(FIGURES)].quantile([0.025, 0.975]).T  # of the known ones
 
