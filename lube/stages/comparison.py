@@ -256,6 +256,7 @@ def _ranges(members, windows, ratio):
         mean, size = others.mean(axis=0), effective_sample_size(others, windows)
         limits = prediction_limits(mean, size, ratio, len(others))
         shares = np.clip(member + (np.sqrt(ratio) - 1.0) * (member - mean), 0.0, 1.0)
+        # A pair that never touches, or always, stays one.
         rows.append(agreement(mean, *limits, np.where(member * (1.0 - member), shares, member)))
     return pd.DataFrame(rows)[list(FIGURES)].quantile([0.025, 0.975]).T  # of the known ones
 
