@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from lube.errors import LubeError, located
-from lube.pipeline.figure_list import Figure
+from lube.pipeline.figure_list import Figure, made_by
 from lube.schema import STAGES
 from lube.study.resolve import study_files
 from lube.study.study import Study
@@ -184,6 +184,24 @@ class StudyFiles:
         return [
             self.result(name) for figure in figures for name in (*products(figure), origin(figure))
         ]
+
+    def made_by(self, target: str, figures: dict[str, Figure]) -> list[str]:
+        """List the files that a target made on request asks for: results, and figures with theirs.
+
+        Parameters
+        ----------
+        target : str
+            Such as ``areal_contact``.
+        figures : dict of str to Figure
+            The study's figures by name.
+
+        Returns
+        -------
+        list of str
+            Their paths. A result may have no figure in this study.
+        """
+        results = [self.result(f"{kind}.nc") for kind in self.study.made_by(target)]
+        return results + self.products(made_by(target, figures))
 
     def benchmarks(self, figures: Iterable[str]) -> dict[str, list[str]]:
         """List the benchmark files of all jobs, by the steps of the study.

@@ -406,6 +406,19 @@ DATASETS = tuple(row.name for row in _ROWS if row.target == "all")
 ON_REQUEST = {row.name: row.target for row in _ROWS if row.target != "all"}
 """Files that are made on request only, each with the target of Snakemake that makes it."""
 
+TARGETS = {
+    "areal_contact": "Contact of the surface that the lines stand for.",
+    "patch_contact": "Squares of the isotropic surface pressed against a flat.",
+    "computed": "Computed films, and contact under them.",
+    "rough_passage": "Passage of rough lines, by the transient Reynolds equation.",
+    "sensitivity": "What the probability of contact rests on.",
+    "electrical": "What electrical meters read of the contact.",
+    "measurement_plan": "What to measure next, by the sensitivity study, which is made first.",
+    "verification": "The study's methods against theory, other methods and print.",
+    "benchmark": "Measured times and coverage of intervals.",
+}
+"""The targets of Snakemake that make files on request, each with a sentence for its list."""
+
 
 def forerunners(stage: str, asks: Callable[[str], bool] = lambda _: True) -> tuple[str, ...]:
     """Return all stages whose values a stage depends on, directly or through others.

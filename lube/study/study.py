@@ -19,7 +19,7 @@ from lube.grid.gap import Gap
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
-from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
+from lube.schema.stages import ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
 from lube.study.line_spec import LineSpec, band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, load_record
@@ -231,7 +231,11 @@ class Study(StrictModel):
     @property
     def datasets(self) -> tuple[str, ...]:
         """Names of the study's results, one file each."""
-        return tuple(name for name in DATASETS if self.has(name))
+        return tuple(self.made_by("all"))
+
+    def made_by(self, target: str) -> list[str]:
+        """Names of the study's files that a target of Snakemake makes, such as ``computed``."""
+        return [name for name, row in STAGES.items() if row.target == target and self.has(name)]
 
     def datasets_in(self, folder: File) -> list[str]:
         """Names of the study's results, and of those made on request that a folder holds.

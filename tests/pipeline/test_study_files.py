@@ -33,6 +33,20 @@ def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
             files.check_targets([target], {})
 
 
+def test_a_target_makes_the_files_that_the_study_has_with_a_figure_or_without(paper_with):
+    def made(*changes):
+        path = paper_with(*changes, ("name", "mine"))
+        study = load_study(path)
+        made = StudyFiles(study, path, {}).made_by("areal_contact", study_figures(study))
+        assert set(made) >= {
+            f"results/mine/figures/fig39_surface_trace.{end}" for end in ("png", "pdf")
+        }
+        return [file.split("/")[-1] for file in made if file.endswith(".nc")]
+
+    assert made() == ["areal.nc", "surface_trace.nc", "areal_gauge.nc"]
+    assert made(("contact_model", ["surface"]), ("uncertainty", None)) == made()
+
+
 def test_profiles_along_rolling_have_no_surface_to_press_or_to_count(tmp_path):
     path = write_study(STUDIES["insulator"], tmp_path / "mine")
     files = StudyFiles(load_study(path), path, {})

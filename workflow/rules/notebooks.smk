@@ -1,6 +1,6 @@
 # The figures of the study, read from their notebooks before any job.
 from lube.report.markdown import plain, to_html
-from lube.schema import SUMMARIES
+from lube.schema import SUMMARIES, TARGETS
 from lube.study.metadata import PAPER as PAPER_TITLE
 from lube.pipeline.figure_list import chapters, made_by, made_on_request, study_figures
 
