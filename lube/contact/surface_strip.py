@@ -36,7 +36,7 @@ from lube.contact.waves import answers_at
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
-from lube.kernels.areal import BLOCK, NO_ANSWER, contacts_per_row, touching_strips
+from lube.kernels.areal import BLOCK, GROUP, NO_ANSWER, contacts_per_row, touching_strips
 from lube.physics.excursions import breaking_curvature
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, jackknife_interval, mean_interval
@@ -353,6 +353,7 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
     if any(one and len(one.answers) > 1 for *_, one in strips):
         both = surface.of_each(waves, drawing)
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points[1], BLOCK), axis=1)
+    tops = tops, np.maximum.reduceat(tops, np.arange(0, surface.points[0], GROUP))
     longest, around = reach
     first, numbers = [], []
     for film, sharp, is_certain, answer in strips:

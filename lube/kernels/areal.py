@@ -18,6 +18,8 @@ from lube.types import Array, Pair
 
 BLOCK = 32
 """Number of points of a row that are searched, or skipped, together."""
+GROUP = 16
+"""Number of rows that are skipped together."""
 
 
 class Answered(NamedTuple):
@@ -56,7 +58,7 @@ NO_ANSWER = Answered(_NOTHING, _NOTHING[0, :0], np.zeros((2, 2, 2, 0), np.float3
 @kernel
 def touching_strips(
     fields: Pair,
-    tops: Array,
+    tops: Pair,
     covariances: Pair,
     places: Pair,
     touching: Pair,
@@ -84,8 +86,9 @@ def touching_strips(
     fields : tuple of numpy.ndarray
         Heights and curvatures of a Gaussian surface, shape (M, M) each, float32, height steps and
         height steps per square metre.
-    tops : numpy.ndarray
-        Shape (M, ceil(M / `BLOCK`)), float32: greatest height of every `BLOCK` points of a row.
+    tops : tuple of numpy.ndarray
+        Greatest heights of every `BLOCK` points of a row, shape (M, ceil(M / `BLOCK`)), float32,
+        and of these in every `GROUP` rows, shape (ceil(M / `GROUP`), ceil(M / `BLOCK`)).
     covariances : tuple of numpy.ndarray
         Shape (R + 1 + A, 2 C - 1) each, float32: covariance of the height at a point with heights
         and with curvatures around it, over the variance of the heights; at distances of -R .. A
@@ -131,9 +134,11 @@ def touching_strips(
     seen = np.zeros((reach + 1 + around, width), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
     heights = np.empty(width, np.float32)
-    known = np.empty((2, reach + 1 + around), np.float32)
+    known = np.empty((4, reach + 1 + around), np.float32)  # of a row, and of it and those before it
     for row in range(known.shape[1]):
         known[0, row], known[1, row] = covariances[0][row].min(), covariances[0][row].max()
+        known[2, row] = known[0, max(row - GROUP + 1, 0) : row + 1].min()
+        known[3, row] = known[1, max(row - GROUP + 1, 0) : row + 1].max()
     least = np.empty((width - 2) // BLOCK + 2, np.float32)
     known_row = np.int64(0)  # for the literal 0, Numba would compile `_row` and `_contact` again
     one, unmoved, strip_nodes = np.float32(1.0), np.float32(0.0), answered.shapes.shape[0]
@@ -154,7 +159,11 @@ def touching_strips(
         search = film, sharp, fading, seen, own, stack, diagonal
         chosen, breaks, first = _contact(moved, search, known_row, origin)
         in_row = film, sharp, fading, seen, others_too, stack, diagonal
-        _, broken, _ = _row(moved, in_row, heights, known_row, own)
+        broken = 0
+        if breaks:
+            _fill_row(moved, known_row, heights)
+        else:
+            _, broken, _ = _row(moved, in_row, heights, known_row, own)
         chosen_in_row = 0.0
         for column in range(width):
             overlap = heights[column] - film[column]
@@ -172,9 +181,12 @@ def touching_strips(
         alone, alone_broken = 1 + others, 1 + broken
         if not breaks or earliest < first:
             alone_broken = 0
+        low = 0  # as many rows before the contact are known to lie too low to touch
         for before in range(1, rows + 1):
             row = first - before
-            if _touches(moved, tops, known, film, least, row):
+            if (places[0][k] + row + 1) % GROUP == 0 and _lie_low(moved, tops, known, least, row):
+                low = before + GROUP - 1
+            if before > low and _touches(moved, tops, known, film, least, row):
                 alone = 0
                 if alone_broken > 0:
                     _, broken, _ = _row(moved, search, heights, row, own)
@@ -296,6 +308,25 @@ def _least_by_block(first_column, film, least):
 
 
 @kernel
+def _lie_low(moved, tops, known, least, last):
+    """Whether a group of rows lies too low to touch."""
+    _, _, reach, first_row, first_column, _, rise, oil = moved
+    most = max(known[2, reach + last] * rise, known[3, reach + last] * rise)
+    if oil[2].size > 0:
+        before = max(last - GROUP + 1, -reach) >> oil[0].shift
+        added = _most_added(moved, before - oil[0].first)
+        while before <= last >> oil[0].shift:
+            before += 1
+            added = max(added, _most_added(moved, before - oil[0].first))
+        most += added
+    group, first = (first_row + last) // GROUP, first_column // BLOCK
+    for block in range(least.size):
+        if tops[1][group, min(first + block, tops[1].shape[1] - 1)] + most > least[block]:
+            return False
+    return True
+
+
+@kernel
 def _touches(moved, tops, known, film, least, row):
     """Whether any point of a row touches; blocks that lie too low are skipped."""
     fields, covariances, reach, first_row, first_column, origin, rise, oil = moved
@@ -306,7 +337,8 @@ def _touches(moved, tops, known, film, least, row):
         most += max(_most_added(moved, before), _most_added(moved, before + 1))
     first, middle, filled = first_column // BLOCK, covariances[0].shape[1] // 2, False
     for block in range(least.size):
-        if not tops[first_row + row, min(first + block, tops.shape[1] - 1)] + most > least[block]:
+        top = tops[0][first_row + row, min(first + block, tops[0].shape[1] - 1)]
+        if not top + most > least[block]:
             continue
         begin = max((first + block) * BLOCK - first_column, 0)
         end = min((first + block + 1) * BLOCK - first_column, film.size)

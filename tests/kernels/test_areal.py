@@ -5,7 +5,7 @@ import pytest
 import scipy.ndimage
 from scipy.interpolate import RegularGridInterpolator
 
-from lube.kernels.areal import BLOCK, NO_ANSWER, Answered, contacts_per_row, touching_strips
+from lube.kernels.areal import BLOCK, GROUP, NO_ANSWER, Answered, contacts_per_row, touching_strips
 
 REACH, AROUND, WIDTH = 60, 20, 24
 ACROSS = np.linspace(-1.0, 1.0, WIDTH)
@@ -127,11 +127,44 @@ def test_strips_are_weighed_as_by_a_naive_implementation(least, diagonal, shape,
         parts = naive(fields, covariances, *each, film, sharp, fading, answered, diagonal)
         expected = [total + part for total, part in zip(expected, parts, strict=True)]
     tops = np.maximum.reduceat(fields[0], np.arange(0, 200, BLOCK), axis=1)
+    tops = tops, np.maximum.reduceat(tops, np.arange(0, 200, GROUP))
     strips = places, touching, film, sharp, fading, AROUND
     found = touching_strips(fields, tops, covariances, *strips, answered, diagonal)
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
     assert 0.0 < found[1][1] < found[0][1] and 0.0 < found[2][1] < found[2][0]
+
+
+@pytest.mark.parametrize("by", ["drawn", "known", "oil"])
+def test_the_one_row_that_touches_before_a_contact_is_found_wherever_it_is(by):
+    """Groups of rows are skipped together."""
+    rng = np.random.default_rng(7)
+    film, sharp, fading = np.full(WIDTH, 1.0), np.full(WIDTH, -1.0), np.full(WIDTH, 2.0)
+    for distance in range(1, REACH - AROUND + 1):
+        row, column = SHIFT**2 * rng.integers(16, 44), SHIFT**2 * rng.integers(1, 43)
+        heights, known = np.full((200, 200), -5.0, np.float32), 0.1 * bump(0.5)
+        known[REACH, WIDTH - 1], answered = 1.0, NO_ANSWER
+        if by == "drawn":
+            heights[row - distance, column + rng.integers(WIDTH)] = 9.0
+        elif by == "known":
+            known[REACH - distance] = 1.5
+        else:
+            added = np.zeros((51, 51, 1), np.float32)
+            added[row - distance >> SHIFT, (column >> SHIFT) + 3] = 50.0
+            heights[row - distance >> SHIFT << SHIFT : row] = -60.0
+            nodes = np.zeros((2, NODES, (AROUND >> SHIFT) + 2 - FIRST, NODES), np.float32)
+            answered = Answered(added, np.ones((NODES, 1), np.float32), nodes, FIRST, SHIFT)
+        fields, place = (heights, 0.0 * heights), (row, column)
+        strip = film, sharp, fading, answered, 0
+        expected = naive(fields, (known, known), *place, 9, np.float32(1.5), *strip)
+        tops = np.maximum.reduceat(heights, np.arange(0, 200, BLOCK), axis=1)
+        tops = tops, np.maximum.reduceat(tops, np.arange(0, 200, GROUP))
+        places = tuple(np.array([each]) for each in place)
+        touching = np.array([9]), np.array([1.5], np.float32)
+        found = touching_strips(
+            fields, tops, (known, known), places, touching, *strip[:3], AROUND, *strip[3:]
+        )
+        np.testing.assert_allclose(found[0], expected[0], rtol=1e-6)
 
 
 @pytest.mark.parametrize("is_answered", [False, True])
