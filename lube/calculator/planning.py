@@ -29,6 +29,7 @@ from lube.inference.planning import (
     QUANTITIES,
     film_by_coefficient,
     half_widths,
+    line_ratios,
     on_surfaces,
     reading_of_surfaces,
     relative_error,
@@ -37,7 +38,6 @@ from lube.inference.planning import (
 from lube.physics.electrical import film_capacitance
 from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import Revolution
-from lube.statistics.one_pair import scatter_ratio
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.surfaces.synthetic import draw_realisation
 from lube.types import Amount, ContactModel, FilmShape, RoughnessDeformation
@@ -78,8 +78,7 @@ def plan(
         ``"line"``; or ``"surface"``, as in `lube.contact_probability`, which takes a minute.
     turns : float or sequence of float, optional
         Length of the record, revolutions of the roller with the faster surface. Longer records of
-        equal rollers in pure rolling tell no more than one revolution. Those of lines with slip
-        tell more than is expected here.
+        equal rollers in pure rolling tell no more than one revolution.
     rig : str, optional
         A known rig, such as ``"mtm-ecr"``, whose error in reading the share of a revolution is
         added. By default the share is read exactly. The rig runs with lines, so its error of
@@ -127,11 +126,11 @@ def plan(
         reading, realisations = reading_of_surfaces(reading, found.probability), SURFACES
     else:
         contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
-        ratios, reach = speed_ratios(slip), spec.longest_wavelength / spec.spacing
-        windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
+        slower, width = min(speed_ratios(slip)), 2.0 * table["contact_half_width"]
+        windows = spec.independent_windows(width, slower)
         size = sample_size(contact["breakthrough_probability"], windows).ravel()
-        found, motion = slopes(spec, table, layer, choices.gap, seed), (ratios, spec.points, reach)
-        ratio = np.array([[scatter_ratio(one, *motion, (1.0, 1.0), 0.0)] for one in records])
+        lines = spec, table, layer, choices.gap, seed
+        found, ratio = slopes(*lines), line_ratios(*lines, slip, records)
     error = relative_error(found.probability, size, ratio[:, None], reading)
     radius = rollers.pair.first.radius
     force, speed, temperature = conditions(force, speed, temperature, radius)

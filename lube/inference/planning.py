@@ -14,10 +14,17 @@ import xarray as xr
 
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
+from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
+from lube.inference.record_scatter import crosswise
 from lube.inference.surface_scatter import revolution_size, surface_scatter
-from lube.statistics.one_pair import quantile
+from lube.statistics.one_pair import (
+    distinct_alignments,
+    persistent_share,
+    quantile,
+    scatter_ratio,
+)
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer, RollerPair
 from lube.surfaces.synthetic import LineSpecLike
@@ -25,6 +32,8 @@ from lube.types import Array, Values
 
 PAIRS = 16
 """Pairs of lines on which slopes are sampled; all quantities have the same."""
+LINES = 24
+"""Lines of either roller that are paired crosswise for the scatter of records with slip."""
 FEWER = 4
 """Surfaces drawn for a probability, for each one drawn for its slopes."""
 HOLDS = 1e-3
@@ -92,6 +101,50 @@ def slopes(
     changed = [sampled(*change) for change in zip(_THICKER, _WEAKER, strict=True)]
     # An estimate of the probability may exceed one.
     return Slopes(np.minimum(sampled(1.0, 1.0), 1.0), *_slopes(*changed))
+
+
+def line_ratios(
+    spec: LineSpec,
+    film: xr.Dataset,
+    layer: BoundaryLayer,
+    gap: Gap,
+    seed: int,
+    slide_to_roll_ratio: float,
+    turns: Sequence[float],
+    drift: float = 0.0,
+    known: float = 1.0,
+) -> Array:
+    """Find the scatter of records of one pair of lines.
+
+    Where the lines meet in new alignments, the part of the scatter that these do not average out is
+    taken as in pure rolling, on lines as drawn.
+
+    Parameters
+    ----------
+    spec, film, layer, gap, seed
+        As in `slopes`.
+    slide_to_roll_ratio, turns, drift
+        As in `on_surfaces`.
+    known : float, optional
+        Length of a realisation, revolutions.
+
+    Returns
+    -------
+    numpy.ndarray, shape (turns, P)
+        Variance of a record's share over that of a realisation.
+    """
+    reach = spec.longest_wavelength / spec.spacing
+    motion = speed_ratios(slide_to_roll_ratio), spec.points, reach
+    windows = ContactWindows(spec, film, layer, Gap(gap.film_shape))
+    persistent = np.ones((2, windows.size))
+    if distinct_alignments(max(turns), *motion) > 1:
+        persistent = persistent_share(*crosswise(windows, spec, seed, LINES))
+        persistent = np.where(np.isfinite(persistent), persistent, 1.0)
+    by_turns = [
+        [scatter_ratio(one, *motion, part, drift) for part in persistent.T]
+        for one in (known, *turns)
+    ]
+    return np.array(by_turns[1:]) / by_turns[0]
 
 
 def on_surfaces(
@@ -201,7 +254,7 @@ def film_by_coefficient(
 
 
 def relative_error(
-    probability: Array, sample_size: Array, ratio: float, reading: Array | float = 0.0
+    probability: Array, sample_size: Array, ratio: Array | float, reading: Array | float = 0.0
 ) -> Array:
     r"""Relative standard error of the contact share that one pair's record shows.
 
@@ -213,9 +266,8 @@ def relative_error(
         Probability P.
     sample_size : numpy.ndarray
         Effective sample size n of one revolution.
-    ratio : float
-        Variance v of the record's share over that of a revolution, from
-        `lube.statistics.one_pair.scatter_ratio`.
+    ratio : numpy.ndarray or float
+        Variance v of the record's share over that of a revolution, at all points or at each.
     reading : numpy.ndarray or float, optional
         Relative error r of the rig's reading. It is a bias, the same in every record, seen on one
         simulated pair. It is added as if it were random, with either sign.

@@ -26,7 +26,8 @@ from lube.statistics.confidence import mean_over_first
 from lube.statistics.line_effects import line_effects
 from lube.statistics.one_pair import persistent_share, scatter_ratio
 from lube.study.study import Study
-from lube.types import Array
+from lube.surfaces.synthetic import LineSpecLike, draw_realisation
+from lube.types import Array, Pair
 
 log = logging.getLogger(__name__)
 
@@ -223,7 +224,8 @@ def _line_effects(model, study, slips, turns, realisations):
         return (np.zeros if one_alignment else np.ones)((2, ratio.size)), None
     most = SHAPED_PAIRS if study.gap.has_shape else MOST_PAIRS
     levels, windows = alignment_windows(model, study)
-    in_first, in_second = _crosswise(study, windows, min(realisations, most))
+    lines = study.line_spec, study.seed, min(realisations, most)
+    in_first, in_second = crosswise(windows, *lines)
     persistent = persistent_share(in_first, in_second)
     known = np.isfinite(persistent).all(axis=0)
     if not known.any():
@@ -282,19 +284,33 @@ def _pooled(study, windows, count, mean, persistent):
     return mean, kept + (1.0 - kept) / pairings
 
 
-def _crosswise(study, windows, count):
-    """Contact share of each first line with each second line, two of shape (count, count, P).
+def crosswise(windows: ContactWindows, spec: LineSpecLike, seed: int, count: int) -> Pair:
+    """Find the contact share of each of some first lines with each second line.
 
-    The first is over a whole turn of the first line, the other over a whole turn of the second. In
-    a turn of a line of another size, part of a line passes more often than the rest: this adds to
-    the line's effect, but does not persist.
+    Parameters
+    ----------
+    windows : ContactWindows
+        Contact windows at P points.
+    spec : LineSpecLike
+        Parameters of the lines.
+    seed : int
+        Seed of the lines.
+    count : int
+        Number of lines of either roller, the first realisations.
+
+    Returns
+    -------
+    in_first, in_second : numpy.ndarray
+        Shape (count, count, P). The first is over a whole turn of the first line, the other over a
+        whole turn of the second. In a turn of a line of another size, part of a line passes more
+        often than the rest: this adds to the line's effect, but does not persist.
     """
     in_first, in_second = np.empty((2, count, count, windows.size))
     for begin in range(0, count, LINES_IN_MEMORY):
         numbers = range(begin, min(begin + LINES_IN_MEMORY, count))
-        firsts = [drawn(study, number)[0] for number in numbers]
+        firsts = [draw_realisation(spec, seed, number)[0] for number in numbers]
         for other in range(count):
-            _, second = drawn(study, other)
+            _, second = draw_realisation(spec, seed, other)
             for number, first in zip(numbers, firsts, strict=True):
                 shares = _shares_of_each((first, second), windows)
                 in_first[number, other], in_second[number, other] = shares

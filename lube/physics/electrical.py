@@ -183,7 +183,7 @@ def mean_inverse_gap(film_thickness: Values, rms: Values, layer: float) -> Value
     with np.errstate(divide="ignore", invalid="ignore"):
         height, least = film / rms, layer / rms
         low = np.log(np.maximum(least, height - _WIDE))
-        high = np.log(np.maximum(height, 0.0) + np.maximum(_WIDE, least))
+        high = np.log(np.maximum(least, height + _WIDE))
         half = 0.5 * (high - low)[..., None]
         gaps = np.exp(low[..., None] + half * (1.0 + _POINTS))
         density = np.exp(-0.5 * (gaps - height[..., None]) ** 2) / np.sqrt(2.0 * np.pi)

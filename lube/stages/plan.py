@@ -5,7 +5,6 @@ import xarray as xr
 
 from lube.contact.ensemble import sample_size, windows_by_force
 from lube.contact.surface_strip import SURFACES
-from lube.grid.discretise import speed_ratios
 from lube.grid.film_profiles import six_digits
 from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
@@ -14,7 +13,6 @@ from lube.inference import planning
 from lube.schema import POINT_DIMS, label, model_dependent
 from lube.sensitivity.findings import LEFT, narrowing
 from lube.sensitivity.samples import SEED
-from lube.statistics.one_pair import scatter_ratio
 from lube.study.rig_settings import OWN_RIG
 from lube.study.study import Study
 from lube.study.uncertainty import CHOICES
@@ -88,10 +86,11 @@ def _of_lines(study, inputs, film, slip, reading, threads):
 
     The sample size is for one revolution, and the variances are divided by that of one revolution.
     """
-    contact, choices = inputs["contact"], (study.boundary_layer, study.gap, study.seed, threads)
-    found = planning.slopes(study.line_spec, film, *choices)
+    contact, lines = inputs["contact"], (study.line_spec, film, study.boundary_layer, study.gap)
+    found = planning.slopes(*lines, study.seed, threads)
     size = _sample_size(contact, inputs["film"], slip)
-    ratios = [_ratio(study, slip, turns) for turns in TURNS]
+    records = slip, TURNS, study.rig.drift, study.revolutions
+    ratios = planning.line_ratios(*lines, study.seed, *records)
     return found, size, ratios, reading, contact.sizes["realisation"]
 
 
@@ -115,15 +114,6 @@ def _sample_size(contact, film, slip):
 def _digits(values):
     """Round to six digits; NaN where a slope or an interval is infinite."""
     return six_digits(np.where(np.isfinite(values), values, np.nan))
-
-
-def _ratio(study, slip, turns):
-    """Variance of a record's share over that of a revolution, if new alignments do not help."""
-    spec = study.line_spec
-    reach = spec.longest_wavelength / spec.spacing
-    known = speed_ratios(slip), spec.points, reach, (1.0, 1.0), study.rig.drift
-    # A realisation may be several revolutions long.
-    return scatter_ratio(turns, *known) / scatter_ratio(study.revolutions, *known)
 
 
 def _reading(electrical, study):

@@ -11,6 +11,7 @@ from lube.grid.gap import PLAIN
 from lube.inference.planning import (
     Slopes,
     half_widths,
+    line_ratios,
     on_surfaces,
     reading_of_surfaces,
     relative_error,
@@ -107,6 +108,24 @@ def test_films_read_from_single_pairs_scatter_as_expected(spec, film, layer, fou
     read = np.log(others / found.probability) / found.by_film
     seen = quantile(60) * read.std(axis=0, ddof=1)
     np.testing.assert_allclose(expected, seen, rtol=3.0 * quantile(60) / np.sqrt(2.0 * 60))
+
+
+def test_lines_that_meet_anew_tell_more_the_longer_they_run(make_spec, film, layer):
+    """Twenty turns with slip of 40 other pairs, and one turn."""
+    from lube.contact.windows import ContactWindows
+
+    spec = make_spec(20_000)
+    windows = ContactWindows(spec, film, layer)
+    pairs = [draw_realisation(spec, 2, number) for number in range(40)]
+    once, often = (
+        np.var([windows.count(pair, 0.1, turns)[:, 1] for pair in pairs], axis=0)
+        for turns in (1.0, 20.0)
+    )
+    one, ratio = line_ratios(spec, film, layer, PLAIN, 1, 0.1, [1.0, 20.0])
+    assert (one == 1.0).all() and (ratio < 0.2).all()
+    np.testing.assert_allclose(np.mean(ratio), np.mean(often / once), rtol=0.5)
+    rolling = line_ratios(spec, film, layer, PLAIN, 1, 0.0, [0.5, 20.0])
+    np.testing.assert_array_equal(rolling, [[2.0] * 3, [1.0] * 3])
 
 
 # --- Surfaces ------------------------------------------------------------------------------

@@ -109,6 +109,12 @@ def test_a_rough_gap_has_more_capacitance_than_its_mean_and_tends_to_it():
     assert more[-1] - 1.0 == pytest.approx((0.28e-6 / 1e-4) ** 2, rel=1e-3)
 
 
+def test_surfaces_far_smoother_than_the_layer_are_plates():
+    rms = np.array([1e-13, 1e-12, 1e-11])
+    np.testing.assert_allclose(mean_inverse_gap(1e-6, rms, LAYER), 1e6, rtol=1e-9)
+    np.testing.assert_allclose(mean_inverse_gap(0.5 * LAYER, rms, LAYER), 1.0 / LAYER, rtol=1e-9)
+
+
 def test_a_drawn_line_has_this_mean():
     heights = np.random.default_rng(1).standard_normal(1_000_000) * 0.28e-6
     gap = np.maximum(1e-6 - heights, LAYER)
