@@ -159,7 +159,8 @@ class StripFilm:
         # Films without a shape are the same everywhere.
         some = slice(1) if self.has_edges else slice(None)
         films, sharp = self.films(spacing)[some], self.breaking_curvatures(spacing, sharp)[some]
-        share = sharp_surface_summit_share(films, surface_moments(spec), sharp)
+        known = surface_moments(spec), sharp, curvature_moments(spec)
+        share = sharp_surface_summit_share(films, *known)
         return found.number, found.number * np.average(share, weights=found.density[some])
 
     def passage_width(
@@ -225,6 +226,39 @@ def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
     slopes = _slopes(spec, 0) + _slopes(spec, 1)
     m0, _, m4 = pair_moments(spec)
     return SurfaceMoments(m0, *slopes.tolist(), m4)
+
+
+def curvature_moments(spec: LineSpecLike) -> Array | None:
+    """Mean squares and products of the curvatures of the surface that a pair of lines stands for.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines. Their mean square curvature is that of the sum of the surface's.
+
+    Returns
+    -------
+    numpy.ndarray, shape (3, 3)
+        As in `lube.physics.excursions.sharp_surface_summit_share`; None without a lay.
+    """
+    if all(line.lay_ratio == 1.0 for line in spec.lines):
+        return None
+    found = np.zeros((3, 3))
+    for roller, line in enumerate(spec.lines):
+        # Curvatures along the lay and across it.
+        part, square = line.lay_ratio**-2.0, spectrum_moments(spec, roller)["rms_curvature"] ** 2
+        ridges, both, across = np.array([3.0 * part**2, part, 3.0]) * (
+            square / (3.0 + 2.0 * part + 3.0 * part**2)
+        )
+        own = [ridges + across + 2.0 * both, ridges - across, ridges + across - 2.0 * both]
+        mean, mixed, difference = 0.25 * np.array(own)
+        cosine, sine = cosine_and_sine(line.lay_angle)
+        turned = np.array([cosine**2 - sine**2, 2.0 * cosine * sine])  # by twice the angle
+        found[0, 0] += mean
+        found[0, 1:] += mixed * turned
+        found[1:, 1:] += both * np.eye(2) + (difference - both) * np.outer(turned, turned)
+    found[1:, 0] = found[0, 1:]
+    return found
 
 
 @functools.lru_cache(maxsize=1)

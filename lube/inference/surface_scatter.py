@@ -14,6 +14,7 @@ from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.statistics.one_pair import prediction_limits, scatter_ratio
+from lube.surfaces.rough_surface import longest_waves
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair, Values
 
@@ -96,7 +97,8 @@ def surface_scatter(
         Of the shape of `turns`: variance of the record's share over that of one revolution of pure
         rolling; NaN where the film is not known.
     """
-    reach, recurring = spec.longest_wavelength / spec.spacing, RecurringContacts(spec)
+    # Ridges across rolling are no longer along it.
+    reach, recurring = longest_waves(spec)[1] / spec.spacing, RecurringContacts(spec)
     strips = strip_films(spec, films, gap)
     durations = turns.reshape(-1, shares.size).T.tolist()
 

@@ -18,8 +18,15 @@ import scipy.special
 
 from lube.types import Array, Values
 
-_HEIGHTS, _HEIGHT_WEIGHTS = np.polynomial.laguerre.laggauss(60)
-_CURVATURES, _CURVATURE_WEIGHTS = np.polynomial.legendre.leggauss(60)
+_MANY, _FEW = 60, 20
+"""Nodes for heights and for curvatures; with the few, and eight for each other variable, fractions
+are off by 0.001."""
+_NODES = {
+    count: (*np.polynomial.laguerre.laggauss(count), *np.polynomial.legendre.leggauss(count))
+    for count in (_MANY, _FEW)
+}
+_NORMAL, _NORMAL_WEIGHTS = np.polynomial.hermite_e.hermegauss(8)
+_NORMAL_WEIGHTS /= _NORMAL_WEIGHTS.sum()
 _WIDE = 9.0
 """Standard deviations beyond which a normal density is left out."""
 
@@ -146,7 +153,7 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
     >>> sharp_summit_share(np.array([5.0]), (1.0, 4.0, 100.0), 20.0).round(3)
     array([0.707])
     """
-    return _share(level, moments, curvature, lambda kappa: kappa)
+    return _share(level, moments, curvature, lambda kappa, _: kappa)
 
 
 def expected_contacts(level: Array, moments: SurfaceMoments, length: float, width: Array) -> Array:
@@ -293,21 +300,23 @@ def passing_contacts(
     return PassingContacts(density, number, appearing)
 
 
-def sharp_surface_summit_share(level: Array, moments: SurfaceMoments, curvature: Values) -> Array:
+def sharp_surface_summit_share(
+    level: Array, moments: SurfaceMoments, curvature: Values, curvatures: Array | None = None
+) -> Array:
     r"""Fraction of a surface's summits above a level that are sharper than a given curvature.
 
-    The surface is isotropic. For one with a lay the fraction is NaN.
-
-    The mean curvature :math:`\kappa` of a summit in two directions and the difference between the
-    directions are independent. Averaged over the difference, summits have the density (Nayak)
+    With the mean curvature :math:`\kappa`, half the difference d of the curvatures along rolling
+    and along the rollers, and the twist t, summits have the density
 
     .. math::
 
-        \left[ \kappa^2 - \mu (1 - e^{-\kappa^2/\mu}) \right] p(z, \kappa) ,
+        \left\langle \left( \kappa^2 - d^2 - t^2 \right)^+ \right\rangle_{d, t \mid z, \kappa}
+        p(z, \kappa) ,
 
     where p is Gaussian with the variances :math:`m_0` and :math:`\mu` and the covariance
-    :math:`m_a`, the mean square slope in one direction; :math:`4 \mu` is the mean square of the
-    sum of both curvatures.
+    :math:`(m_a + m_b)/2`, the mean square slope of all directions; :math:`4 \mu` is the mean square
+    of the sum of both curvatures. If the surface is isotropic, d and t are independent of z and
+    :math:`\kappa`, and the mean is :math:`\kappa^2 - \mu (1 - e^{-\kappa^2/\mu})` (Nayak).
 
     Parameters
     ----------
@@ -315,6 +324,9 @@ def sharp_surface_summit_share(level: Array, moments: SurfaceMoments, curvature:
         As in `expected_contacts`.
     curvature : float or numpy.ndarray
         Mean curvature, 1/m, for all levels or for each.
+    curvatures : numpy.ndarray, shape (3, 3), optional
+        Mean squares and products of :math:`\kappa`, d and t, 1/m^2; by default those of an
+        isotropic surface.
 
     Returns
     -------
@@ -330,25 +342,53 @@ def sharp_surface_summit_share(level: Array, moments: SurfaceMoments, curvature:
     >>> moments = SurfaceMoments(1.0, along=2.0, across=2.0, mixed=0.0, curvature=100.0)
     >>> sharp_surface_summit_share(np.array([5.0]), moments, 10.0).round(3)
     array([0.866])
+    >>> curvatures = 25.0 * np.diag([1.0, 0.5, 0.5])
+    >>> sharp_surface_summit_share(np.array([5.0]), moments, 10.0, curvatures).round(3)
+    array([0.866])
     """
-    if moments.along != moments.across or moments.mixed != 0.0:
-        return np.full(np.shape(level), np.nan)
-    spread = 0.25 * moments.curvature
-    return _share(
-        level,
-        (moments.height, moments.along, spread),
-        curvature,
-        lambda kappa: kappa**2 + spread * np.expm1(-(kappa**2) / spread),
-    )
+    height, along, across, mixed, square = moments
+    spread, slopes = 0.25 * square, 0.5 * (along + across)
+    known = level, (height, slopes, spread), curvature
+    if curvatures is None:
+        return _share(*known, lambda kappa, _: kappa**2 + spread * np.expm1(-(kappa**2) / spread))
+    # The two others at a given height, then at a given mean curvature, too: normal, with means that
+    # follow both, and with what is left of their mean squares and product.
+    by_height = np.array([slopes, 0.5 * (along - across), mixed])
+    left = curvatures - np.outer(by_height, by_height) / height
+    by_curvature = left[1:, 0] / left[0, 0]
+    left = left[1:, 1:] - left[0, 0] * np.outer(by_curvature, by_curvature)
+    least = 1e-12 * spread  # long ridges have no curvature along them
+    first = math.sqrt(max(left[0, 0], least))
+    shared = left[0, 1] / first
+    second = math.sqrt(max(left[1, 1] - shared**2, least))
+
+    def weight(kappa, mean):
+        difference, twist = (
+            some / slopes * mean + other * (kappa - mean)
+            for some, other in zip(by_height[1:], by_curvature, strict=True)
+        )
+        total = 0.0
+        for one, chance in zip(_NORMAL, _NORMAL_WEIGHTS, strict=True):
+            rest = kappa**2 - (difference + first * one) ** 2
+            for other, times in zip(_NORMAL, chance * _NORMAL_WEIGHTS, strict=True):
+                twisted = twist + (shared * one + second * other)
+                total = total + times * np.maximum(rest - twisted**2, 0.0)
+        return total
+
+    return _share(*known, weight, _FEW)
 
 
-def _share(level, moments, least_curvature, weight):
-    """Fraction of the summits above levels that are sharper than a curvature, given a weight."""
+def _share(level, moments, least_curvature, weight, nodes=_MANY):
+    """Fraction of the summits above levels that are sharper than a curvature.
+
+    They have a weight that depends on their curvature, and on its mean at their height.
+    """
     m0, covariance, variance = moments
+    above, above_weights, curvatures, curvature_weights = _NODES[nodes]
     # Heights are integrated by Gauss-Laguerre quadrature, with z = h + m0 t / h.
     scale = np.asarray(level, float)[..., None]
-    height = scale + m0 / scale * _HEIGHTS
-    heights = _HEIGHT_WEIGHTS * np.exp(-0.5 * m0 * (_HEIGHTS / scale) ** 2)
+    height = scale + m0 / scale * above
+    heights = above_weights * np.exp(-0.5 * m0 * (above / scale) ** 2)
     # Curvatures, which are normal at a given height, by Gauss-Legendre quadrature.
     mean = covariance / m0 * height
     deviation = math.sqrt(variance - covariance**2 / m0)
@@ -356,9 +396,9 @@ def _share(level, moments, least_curvature, weight):
     def summits(least):
         low = np.maximum(np.asarray(least)[..., None], mean - _WIDE * deviation)
         half = 0.5 * np.maximum(mean + _WIDE * deviation - low, 0.0)
-        kappa = (low + half)[..., None] + half[..., None] * _CURVATURES
+        kappa = (low + half)[..., None] + half[..., None] * curvatures
         normal = np.exp(-0.5 * ((kappa - mean[..., None]) / deviation) ** 2)
-        inner = half * np.sum(_CURVATURE_WEIGHTS * weight(kappa) * normal, axis=-1)
+        inner = half * np.sum(curvature_weights * weight(kappa, mean[..., None]) * normal, axis=-1)
         return np.sum(heights * inner, axis=-1)
 
     return summits(least_curvature) / summits(0.0)

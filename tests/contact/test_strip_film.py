@@ -8,7 +8,7 @@ from whole_surfaces import Filtered, Unchanged, answered_strip
 
 from lube.contact import surface_strip
 from lube.contact.pair_scatter import pair_deviation
-from lube.contact.strip_film import StripFilm, surface_moments
+from lube.contact.strip_film import StripFilm, curvature_moments, surface_moments
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import SURFACES as SAMPLED
 from lube.contact.surface_strip import surface_contact
@@ -286,3 +286,21 @@ def test_a_thicker_film_is_on_the_same_strip(spec):
         rise = 0.0 - strip.breaking_curvatures(1e-6, 0.0)
         np.testing.assert_allclose(0.0 - thicker.breaking_curvatures(1e-6, 0.0), 1.1 * rise)
         np.testing.assert_array_equal(strip.thicker(1.0).films(1e-6), strip.films(1e-6))
+
+
+def test_curvatures_with_a_lay_are_those_of_the_surface(make_spec):
+    """By the waves of the surface; the second roller's ridges are at an angle."""
+    lay = {"lay_ratio": 3.0, "lay_angle": "30 deg"}
+    spec = make_spec(
+        50_000, longest_wavelength=4e-4, shortest_wavelength="16 points", second_own=lay
+    )
+    surface = rough_surface(spec, waves=12)
+    units = 2.0 * np.pi / np.array(surface.sides)
+    down = units[0] * np.fft.fftfreq(surface.coarse[0], 1.0 / surface.coarse[0])[:, None]
+    along = units[1] * np.arange(surface.coarse[1] // 2 + 1)
+    power = surface.variances * np.where(along, 2.0, 1.0) * spec.height_step**2
+    curved = 0.5 * (along**2 + down**2), 0.5 * (along**2 - down**2), along * down
+    expected = [[np.sum(power * one * other) for one in curved] for other in curved]
+    found = curvature_moments(spec)
+    np.testing.assert_allclose(found, expected, rtol=0.05, atol=0.01 * found[0, 0])
+    assert curvature_moments(make_spec(50_000)) is None

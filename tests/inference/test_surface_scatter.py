@@ -88,6 +88,19 @@ def test_a_film_that_is_not_known_has_no_scatter(busy_study):
     assert np.isnan(found).tolist() == [False, True, False]
 
 
+def test_ridges_across_rolling_need_no_longer_way_to_a_new_alignment(make_spec):
+    """Stretched along the rollers, as the strip is, they touch as the surface without ridges."""
+    film = xr.Dataset({"film_thickness": ("record", [7e-7]), "contact_half_width": 1.5e-4})
+    # In each turn the slower surface stays behind by one and a half longest wavelengths.
+    motion = np.array([0.4]), np.array([0.002]), np.array([[1.0], [20.0]]), PLAIN, 0.0
+    found = []
+    for ratio in (1.0, 4.0):
+        spec = make_spec(50_000, longest_wavelength=4e-4, lay_ratio=ratio, lay_angle=90.0)
+        found.append(surface_scatter(spec, ratio * 1e-3, film, *motion))
+    np.testing.assert_allclose(*found, rtol=0.03)
+    assert found[0][1] < 0.5
+
+
 @pytest.mark.parametrize("film_shape", ["flat", "computed"])
 def test_films_with_a_shape_have_a_scatter_too(busy_study, film_shape):
     study = busy_study.model_copy(update={"film_shape": film_shape})

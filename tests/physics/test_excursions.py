@@ -80,25 +80,41 @@ def test_all_summits_of_a_surface_are_sharper_than_flat_and_none_than_a_needle()
     levels = np.array([0.5, 2.0, 9.0])
     np.testing.assert_allclose(sharp_surface_summit_share(levels, SURFACE, 0.0), 1.0)
     assert np.all(sharp_surface_summit_share(levels, SURFACE, 1e3) < 1e-100)
-    unlike = SURFACE._replace(along=1.0)
-    assert np.isnan(sharp_surface_summit_share(levels, unlike, 1.0)).all()
 
 
 def test_sharp_summits_of_a_surface_are_those_of_drawn_critical_points():
+    m2, cross = SURFACE.along, SURFACE.curvature / 8.0
+    hessian = np.array([[3.0 * cross, cross, 0.0], [cross, 3.0 * cross, 0.0], [0.0, 0.0, cross]])
+    expected = of_drawn_points(SURFACE.height, [m2, m2, 0.0], hessian, 4.0)
+    found = sharp_surface_summit_share(np.array([2.0]), SURFACE, 4.0)
+    assert found == pytest.approx(expected, abs=0.01)
+    assert 0.1 < expected < 0.9
+
+
+def test_sharp_summits_of_a_surface_with_a_lay_are_those_of_drawn_critical_points():
+    """Waves of some directions and lengths, more of them along rolling than across it."""
+    along, across = np.array([[1.0, 1.6, 1.5, 0.4, 0.7], [0.1, -0.4, 0.8, 0.5, 1.2]])
+    power = np.array([1.0, 0.4, 0.3, 0.3, 0.2])
+    slopes = np.stack([along**2, across**2, along * across])
+    hessian = np.einsum("iw,jw,w->ij", slopes, slopes, power)
+    turned = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
+    curvatures = np.einsum("ai,bj,ij->ab", turned, turned, hessian)
+    squares = np.sum(slopes * power, axis=1)
+    expected = of_drawn_points(power.sum(), squares, hessian, 2.4)
+    moments = SurfaceMoments(power.sum(), *squares, 4.0 * curvatures[0, 0])
+    found = sharp_surface_summit_share(np.array([2.0]), moments, 2.4, curvatures)
+    assert found == pytest.approx(expected, abs=0.01)
+    assert 0.1 < expected < 0.9
+
+
+def of_drawn_points(height, slopes, hessian, curvature):
     """Heights and second derivatives drawn at points without slope, weighed by |det H| (Rice)."""
-    m0, m2, cross = SURFACE.height, SURFACE.along, SURFACE.curvature / 8.0
-    covariance = [
-        [m0, -m2, -m2, 0.0],
-        [-m2, 3.0 * cross, cross, 0.0],
-        [-m2, cross, 3.0 * cross, 0.0],
-        [0.0, 0.0, 0.0, cross],
-    ]
+    covariance = np.empty((4, 4))
+    covariance[0, 0], covariance[1:, 1:] = height, hessian
+    covariance[0, 1:] = covariance[1:, 0] = -np.asarray(slopes)
     rng = np.random.default_rng(4)
     z, xx, yy, xy = rng.multivariate_normal(np.zeros(4), covariance, 2_000_000).T
     weight = xx * yy - xy**2
     maximum = (weight > 0.0) & (xx < 0.0) & (z > 2.0)
-    sharp = maximum & (-(xx + yy) / 2.0 > 4.0)
-    expected = weight[sharp].sum() / weight[maximum].sum()
-    found = sharp_surface_summit_share(np.array([2.0]), SURFACE, 4.0)
-    assert found == pytest.approx(expected, abs=0.01)
-    assert 0.1 < expected < 0.9
+    sharp = maximum & (-(xx + yy) / 2.0 > curvature)
+    return weight[sharp].sum() / weight[maximum].sum()
