@@ -228,19 +228,21 @@ def _expected(table, contact_model):
     """95 % range of each figure of agreement if the model is correct, over film_formula.
 
     Each realisation in turn is left out of the ensemble and compared with the others as the
-    records of a pair of rollers, at all records at once. It deviates from them as much more or
-    less than in one revolution as records do. NaN for surfaces, which have none.
+    records of a pair of rollers, at all of its records at once; a second pair's is the next
+    realisation. It deviates from the others as much more or less than in one revolution as records
+    do. NaN for surfaces, which have none.
     """
     ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
     if contact_model == "line":
         measured = np.isfinite(table["measured_share"].values)
         windows = windows_in(table, 2.0 * table["contact_half_width"].values)
         by_formula = table["breakthrough_probability"].values.swapaxes(0, 1)
-        scatter = table["scatter_ratio"].values
+        scatter, pair = table["scatter_ratio"].values, table["pair"].to_series().factorize()[0]
         for row, (members, ratio) in enumerate(zip(by_formula, scatter, strict=True)):
             known = measured & np.isfinite(members).all(axis=0)
             if len(members) > 2 and known.any():
-                ranges[row] = _ranges(members[:, known], windows[known], ratio[known])
+                of_known = windows[known], ratio[known], pair[known]
+                ranges[row] = _ranges(members[:, known], *of_known)
     return {
         f"{name}_expected{side}": ranges[:, figure, end]
         for figure, name in enumerate(FIGURES)
@@ -248,16 +250,20 @@ def _expected(table, contact_model):
     }
 
 
-def _ranges(members, windows, ratio):
+def _ranges(members, windows, ratio, pair):
     """Range of each figure over the realisations left out, shape (figures, 2)."""
-    rows = []
+    sides = []
     for number, member in enumerate(members):
         others = np.delete(members, number, axis=0)
         mean, size = others.mean(axis=0), effective_sample_size(others, windows)
         limits = prediction_limits(mean, size, ratio, len(others))
         shares = np.clip(member + (np.sqrt(ratio) - 1.0) * (member - mean), 0.0, 1.0)
         # A pair that never touches, or always, stays one.
-        rows.append(agreement(mean, *limits, np.where(member * (1.0 - member), shares, member)))
+        shares = np.where(member * (1.0 - member), shares, member)
+        sides.append(np.broadcast_arrays(mean, *limits, shares))
+    left_out = (np.arange(len(members))[:, None] + pair) % len(members)
+    by_record = np.array(sides)[left_out, :, np.arange(pair.size)]
+    rows = [agreement(*one.T) for one in by_record]
     return pd.DataFrame(rows)[list(FIGURES)].quantile([0.025, 0.975]).T  # of the known ones
 
 

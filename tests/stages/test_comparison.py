@@ -153,6 +153,21 @@ def test_the_expected_range_is_that_of_the_scatter_of_the_records(compared, busy
         assert ratio.min() < here[upper] / there[upper] < ratio.max()
 
 
+def test_records_of_several_pairs_are_expected_to_agree_as_several_realisations(
+    compared, busy, mean, members
+):
+    pairs = np.arange(12) % 3
+    levels = busy.study.operating_grid.model_dump()
+    names = np.array(["new", "worn", "old"])[pairs]
+    found = compared(experiment_at(levels, mean, pair=names)).sel(FORMULA)
+    biases = []
+    for number in range(len(members)):
+        own = members[(number + pairs) % len(members), np.arange(12)]
+        biases.append(np.mean((members.sum(axis=0) - own) / (len(members) - 1) - own))
+    for side, level in (("lower", 0.025), ("upper", 0.975)):
+        assert found[f"bias_expected_{side}"] == pytest.approx(np.quantile(biases, level))
+
+
 def test_two_realisations_give_no_range(busy):
     experiment = experiment_of([0.2], **POINT)
     contact = busy.contact.isel(realisation=slice(2))
