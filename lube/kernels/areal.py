@@ -133,7 +133,7 @@ def touching_strips(
     contact, breakthrough, contacts = np.zeros(rows + 1), np.zeros(rows + 1), np.zeros(2)
     seen = np.zeros((reach + 1 + around, width), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
-    heights = np.empty(width, np.float32)
+    heights, filled = np.empty(seen.shape, np.float32), np.full(seen.shape[0], -1)
     known = np.empty((4, reach + 1 + around), np.float32)  # of a row, and of it and those before it
     for row in range(known.shape[1]):
         known[0, row], known[1, row] = covariances[0][row].min(), covariances[0][row].max()
@@ -150,23 +150,22 @@ def touching_strips(
         node, part = _node(origin, answered.shift)
         _fill_by_known(by_known, answered, node, part)
         highest[:] = np.nan
-        oil = answered, by_known, nodes, highest
-        drawn = fields, covariances, reach, places[0][k], places[1][k], origin, unmoved, oil
+        oil, rows_of_heights = (answered, by_known, nodes, highest), (heights, filled, k)
+        place = reach, places[0][k], places[1][k], origin
+        drawn = fields, covariances, *place, unmoved, oil, rows_of_heights
         variance = one + _along(by_known[0, -answered.first], origin, answered.shift)
         rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
-        moved = fields, covariances, reach, places[0][k], places[1][k], origin, rise, oil
+        moved = fields, covariances, *place, rise, oil, rows_of_heights
         own, others_too = np.int32(2 * k + 1), np.int32(2 * k + 2)
         search = film, sharp, fading, seen, own, stack, diagonal
         chosen, breaks, first = _contact(moved, search, known_row, origin)
         in_row = film, sharp, fading, seen, others_too, stack, diagonal
         broken = 0
-        if breaks:
-            _fill_row(moved, known_row, heights)
-        else:
-            _, broken, _ = _row(moved, in_row, heights, known_row, own)
+        if not breaks:
+            _, broken, _ = _row(moved, in_row, known_row, own)
         chosen_in_row = 0.0
         for column in range(width):
-            overlap = heights[column] - film[column]
+            overlap = heights[reach, column] - film[column]
             if overlap > 0.0 or column == origin:  # the known point may be rounded to the film
                 chosen_in_row += np.exp(-fading[column] * overlap)
         contact[0] += 1.0 / chosen_in_row
@@ -176,7 +175,7 @@ def touching_strips(
         if first <= -around:
             continue  # too long a contact to be a first one
         _least_by_block(places[1][k], film, least)
-        others, broken, earliest = _row(moved, search, heights, first, own)
+        others, broken, earliest = _row(moved, search, first, own)
         # Several contacts that begin in the same row count as one first contact.
         alone, alone_broken = 1 + others, 1 + broken
         if not breaks or earliest < first:
@@ -189,7 +188,7 @@ def touching_strips(
             if before > low and _touches(moved, tops, known, film, least, row):
                 alone = 0
                 if alone_broken > 0:
-                    _, broken, _ = _row(moved, search, heights, row, own)
+                    _, broken, _ = _row(moved, search, row, own)
                     if broken > 0:
                         alone_broken = 0
             if alone > 0:
@@ -242,7 +241,7 @@ def contacts_per_row(
     reach = covariances[0].shape[0] - 1 - around
     seen = np.zeros((reach + 1 + around, film.size), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
-    heights = np.empty(film.size, np.float32)
+    heights, filled = np.empty(seen.shape, np.float32), np.full(seen.shape[0], -1)
     counts = np.zeros(2)
     origin, unmoved, first = np.int64(0), np.float32(0.0), np.int64(-reach)
     strip_nodes = answered.shapes.shape[0]
@@ -250,10 +249,11 @@ def contacts_per_row(
     nodes, fading = np.empty(strip_nodes, np.float32), np.zeros(film.size)
     oil = answered, by_known, nodes, np.empty(0, np.float32)
     for k in range(places[0].size):
-        moved = fields, covariances, reach, places[0][k], places[1][k], origin, unmoved, oil
+        place = reach, places[0][k], places[1][k], origin
+        moved = fields, covariances, *place, unmoved, oil, (heights, filled, k)
         search = film, sharp, fading, seen, np.int32(k + 1), stack, diagonal
         for row in range(first, around + 1):
-            contacts, broken, _ = _row(moved, search, heights, row, search[4])
+            contacts, broken, _ = _row(moved, search, row, search[4])
             if row > first:  # those of the first row may begin before it
                 counts[0] += contacts
                 counts[1] += broken
@@ -261,7 +261,7 @@ def contacts_per_row(
 
 
 @kernel
-def _row(moved, search, heights, row, followed):
+def _row(moved, search, row, followed):
     """Follow the contacts of a row that were not followed before, under the same or another mark.
 
     Returns the numbers of new contacts, and of new contacts whose boundary layer breaks, and the
@@ -270,10 +270,12 @@ def _row(moved, search, heights, row, followed):
     film, seen, mark = search[0], search[3], search[4]
     reach = moved[2]
     contacts, broken, earliest = 0, 0, row
-    _fill_row(moved, row, heights)
-    for column in range(heights.size):
+    heights, filled, own = moved[8]
+    if filled[reach + row] != own:
+        _fill_row(moved, row)
+    for column in range(film.size):
         before = seen[reach + row, column]
-        if heights[column] > film[column] and before != mark and before != followed:
+        if heights[reach + row, column] > film[column] and before != mark and before != followed:
             _, breaks, first = _contact(moved, search, row, column)
             contacts += 1
             if breaks:
@@ -283,10 +285,12 @@ def _row(moved, search, heights, row, followed):
 
 
 @kernel
-def _fill_row(moved, row, heights):
+def _fill_row(moved, row):
     """Fill in the heights of a row, counted from the known one."""
-    fields, covariances, reach, first_row, first_column, origin, rise, oil = moved
-    width = heights.size
+    fields, covariances, reach, first_row, first_column, origin, rise, oil, known_rows = moved
+    rows, filled, own = known_rows
+    filled[reach + row] = own
+    heights, width = rows[reach + row], rows.shape[1]
     drawn = fields[0][first_row + row, first_column : first_column + width]
     middle = covariances[0].shape[1] // 2
     known = covariances[0][reach + row, middle - origin : middle - origin + width]
@@ -310,7 +314,7 @@ def _least_by_block(first_column, film, least):
 @kernel
 def _lie_low(moved, tops, known, least, last):
     """Whether a group of rows lies too low to touch."""
-    _, _, reach, first_row, first_column, _, rise, oil = moved
+    _, _, reach, first_row, first_column, _, rise, oil, _ = moved
     most = max(known[2, reach + last] * rise, known[3, reach + last] * rise)
     if oil[2].size > 0:
         before = max(last - GROUP + 1, -reach) >> oil[0].shift
@@ -329,7 +333,7 @@ def _lie_low(moved, tops, known, least, last):
 @kernel
 def _touches(moved, tops, known, film, least, row):
     """Whether any point of a row touches; blocks that lie too low are skipped."""
-    fields, covariances, reach, first_row, first_column, origin, rise, oil = moved
+    fields, covariances, reach, first_row, first_column, origin, rise, oil, _ = moved
     most = max(known[0, reach + row] * rise, known[1, reach + row] * rise)
     if oil[2].size > 0:
         # Between rows of nodes, what the oil adds is linear.
@@ -359,7 +363,7 @@ def _touches(moved, tops, known, film, least, row):
 @inlined
 def _moved(surface, moved, row, column):
     """Height (0) or curvature (1) at a point of the strip, rows counted from the known one."""
-    fields, covariances, reach, first_row, first_column, origin, rise, oil = moved
+    fields, covariances, reach, first_row, first_column, origin, rise, oil, _ = moved
     drawn = fields[surface][first_row + row, first_column + column]
     middle = covariances[surface].shape[1] // 2
     found = drawn + covariances[surface][reach + row, middle + column - origin] * rise
@@ -391,7 +395,7 @@ def _fill_nodes(moved, row):
 @kernel
 def _at_node(surface, moved, row, node):
     """Find what the oil adds to `_moved` at a node of the strip."""
-    _, _, _, first_row, first_column, _, rise, (answered, by_known, _, _) = moved
+    _, _, _, first_row, first_column, _, rise, (answered, by_known, _, _), _ = moved
     fields, shapes, shift = answered.fields, answered.shapes, answered.shift
     added = np.float32(0.0)
     if surface == 0:
@@ -429,12 +433,14 @@ def _contact(moved, search, row, column):
     whether its boundary layer breaks, and its earliest row.
     """
     film, sharp, fading, seen, mark, stack, diagonal = search
-    reach = moved[2]
+    reach, (heights, filled, own) = moved[2], moved[8]
     ahead = seen.shape[0] - reach - 1
+    if filled[reach + row] != own:
+        _fill_row(moved, row)
     seen[reach + row, column] = mark
     stack[0, 0], stack[0, 1] = row, column
     waiting, earliest = 1, row
-    highest, summit_row, summit_column = _moved(0, moved, row, column) - film[column], row, column
+    highest, summit_row, summit_column = heights[reach + row, column] - film[column], row, column
     chosen = np.exp(-fading[column] * highest)
     while waiting > 0:
         waiting -= 1
@@ -448,7 +454,9 @@ def _contact(moved, search, row, column):
             inside = -reach <= next_row <= ahead and 0 <= next_column < seen.shape[1]
             if not inside or seen[reach + next_row, next_column] == mark:
                 continue
-            overlap = _moved(0, moved, next_row, next_column) - film[next_column]
+            if filled[reach + next_row] != own:
+                _fill_row(moved, next_row)
+            overlap = heights[reach + next_row, next_column] - film[next_column]
             if overlap > 0.0:
                 seen[reach + next_row, next_column] = mark
                 stack[waiting, 0], stack[waiting, 1] = next_row, next_column
