@@ -125,14 +125,23 @@ def test_the_answers_are_those_of_the_datasets(study, results):
         "Against a simulated rig (3 records of 1 pair of rollers) the simulation is on average "
         "1.2 percentage points too low; the rms difference is 2.4 points. 75 % of the records lie "
         "within their 95 % prediction intervals; with a correct model, 60 % to 100 % would.",
-        "has both limits for 1 of 3 records; contact is too rare for an upper limit in 1; contact "
-        "is too frequent for a lower limit in 1.",
+        "has both limits for 1 of 3 records; contact is too rare, or the film among the study's "
+        "thickest, for an upper limit in 1; contact is too frequent for a lower limit in 1.",
         "| normal force | 800 N: 0.01 %; 1600 N: 5.4 % |",
         "| 1600 N, 100 r/min, 80 °C, slide-to-roll ratio 0 | 0.283 µm | 1 | **0 %** "
         "(0 % to 0.01 %) | ",
     ):
         assert words in text
     assert text.count(" | 43.2 % to 44.2 % (2 records) |") == 1 and text.count(" | – |") == 1
+
+
+def test_a_single_operating_point_is_stated_as_one(study, results):
+    one = {"slide_to_roll_ratio": [0], "temperature": [0], "speed": [1], "force": [0]}
+    parts = {name: results[name].isel(one, missing_dims="ignore") for name in ("film", "contact")}
+    text = findings(study.model_copy(update={"traces": study.traces[:1]}), results | parts)
+    assert "With the film formula `paper`, at the one operating point:" in text
+    assert "µm thick, the lambda ratio 1.\n" in text
+    assert "The regime is piezoviscous and rigid.\n" in text
 
 
 def test_points_at_which_the_model_does_not_hold_are_stated(study, results):
