@@ -75,6 +75,17 @@ def test_rollers_with_a_roughness_of_their_own_are_stated(study, datasets):
     assert f"skewness 0 and kurtosis 4; {band} |" in text
 
 
+def test_ground_rollers_have_no_lines(study, datasets):
+    lay = study.roughness.model_copy(update={"lay_ratio": 5.0, "lay_angle": 0.0})
+    ground = study.model_copy(update={"roughness": lay, "contact_model": ("surface",)})
+    text = facts(ground, datasets["lubricant"])
+    assert "| **Roughness** | Hurst exponent 0.7; waves 420 µm" in text
+    assert "lines" not in text.partition("**Experiment**")[0]
+    assert "| **Roughness lines** | 20,000 points around the first roller, Hurst exponent" in (
+        facts(study, datasets["lubricant"])
+    )
+
+
 @pytest.fixture
 def results(study, datasets):
     """The datasets of the study, with chosen values."""
