@@ -39,6 +39,7 @@ def test_two_oils_of_one_title_are_both_stated(study):
     table = lubricant_table(oils, study.operating_grid.temperature)
     text = facts(study.model_copy(update={"lubricants": tuple(oils)}), table)
     assert text.count("| **Lubricants** | Mobilgear SHC XMP 320: ") == 2
+    assert "| **Operating points** | 16 for each lubricant: 800 and" in text
 
 
 def test_several_pairs_and_their_drift_are_stated(study, datasets):
