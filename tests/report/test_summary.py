@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 import xarray as xr
+from studies import CONFIG
 
 from lube.report.summary import facts, findings, made
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import OwnRoughness
+from lube.study.study import load_study
 
 
 def test_the_numbers_of_the_study_are_stated(study, datasets):
@@ -19,7 +21,8 @@ def test_the_numbers_of_the_study_are_stated(study, datasets):
         "20,000 points",
         "critical thickness 5 nm, shear strength 1 MPa",
         "4 pairs of roughness lines, 1 revolution each; seed 20181109",
-        "a simulated rig: one pair of rollers turns 4 revolutions at every operating point; a",
+        "a simulated rig: one pair of rollers turns 4 revolutions at every operating point of the "
+        "slide-to-roll ratio nearest to 0; a",
     ):
         assert words in text
     assert "numpy 2" in made(study) and "The authors of lube" in made(study)
@@ -45,8 +48,11 @@ def test_two_oils_of_one_title_are_both_stated(study):
 def test_several_pairs_and_their_drift_are_stated(study, datasets):
     rig = study.rig.model_copy(update={"pairs": 3, "drift": 0.3})
     text = facts(study.model_copy(update={"rig": rig}), datasets["lubricant"])
-    assert "3 pairs of rollers turn 4 revolutions at every operating point" in text
+    assert "3 pairs of rollers turn 4 revolutions at every operating point of the" in text
     assert "each revolution renews 30 % of the roughness variance; a" in text
+    rolling = study.operating_grid.model_copy(update={"slide_to_roll_ratio": (0.0,)})
+    text = facts(study.model_copy(update={"operating_grid": rolling}), datasets["lubricant"])
+    assert "turns 4 revolutions at every operating point; a" in text
 
 
 def test_unequal_rollers_many_levels_and_measured_records_are_stated(study, datasets):
@@ -74,6 +80,13 @@ def test_rollers_with_a_roughness_of_their_own_are_stated(study, datasets):
     assert "first: Hurst exponent 0.7; second: Hurst exponent 0.9, roll-off at 200 µm, skew" in text
     band = "waves 420 µm (contact width at the largest force) to 157 µm"
     assert f"skewness 0 and kurtosis 4; {band} |" in text
+
+
+def test_rollers_with_one_measured_map_are_equal(datasets):
+    study = load_study(CONFIG / "measured.yaml")
+    # As jobs load it: each roller has what was read of the map as an object of its own.
+    study = load_study(CONFIG / "measured.yaml", **study.readings)
+    assert "| two equal rollers: radius 50 mm" in facts(study, datasets["lubricant"])
 
 
 def test_ground_rollers_have_no_lines(study, datasets):
