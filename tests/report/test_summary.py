@@ -192,6 +192,8 @@ def test_points_whose_roughness_is_not_answered_linearly_are_counted(study, resu
     film = results["film"].assign(film_thickness=results["film"]["film_thickness"] + 0.0 * slips)
     half = film["film_thickness"].isel(film_formula=0, drop=True) / 2.0
     text = findings(study, results | {"film": film.assign(rms_deformation=half.where(slips > 0))})
+    # The film has a dimension of slip although no heating is applied.
+    assert "Heating of the oil at the inlet, which is not applied, would make" in text
     assert "At 8 of the 16 operating points the oil changes the roughness by more than 10 %" in text
 
 
