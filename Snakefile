@@ -40,6 +40,6 @@ for target, says in TARGETS.items():
         input:
             FILES.made_by(target, FIGURES),
         message:
-            f"Done: {', '.join(f'{kind}.nc' for kind in STUDY.made_by(target))} and their figures are in {RESULTS}"
+            f"Done: {', '.join(f'{kind}.nc' for kind in STUDY.made_by(target))}, with figures, in {RESULTS}"
 
     list(workflow.rules)[-1].docstring = says

@@ -133,6 +133,8 @@ def _short(value):
 def _variables(one, other, name):
     """Say how the values of a variable differ; an empty text if they are the same."""
     here, there = one[name], other[name]
+    if not (here.size and there.size):
+        return ""  # no label in common, as other lines say
     if dict(here.sizes) != dict(there.sizes):
         return f"{_sizes(here)} against {_sizes(there)}"
     there = there.transpose(*here.dims)
@@ -192,6 +194,8 @@ def _intervals_apart(one, other, name):
         return ""
     alone = here[0].isnull() != there[0].isnull()
     apart = int((alone | (here[0] > there[1]) | (there[0] > here[1])).sum())
+    if apart == 1:
+        return "; 1 interval does not overlap"
     return f"; {apart or 'all'} intervals {'do not ' * (apart > 0)}overlap"
 
 

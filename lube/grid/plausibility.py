@@ -54,11 +54,15 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
     film = film.isel(film_formula=0)
     width, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
     invalid = ~film["in_validity_range"].astype(bool)
-    share = 100.0 * expected_load_share(film, rollers).max().item()
-    by_surface = ""
-    if "surface_load_share" in film:
-        most = 100.0 * film["surface_load_share"].max().item()
-        by_surface = f", {most:.2g} % by those of the surface"
+    shares = {
+        "line": expected_load_share(film, rollers) if lines.follows_rolling else None,
+        "surface": film.get("surface_load_share"),
+    }
+    carried = [
+        f"{100.0 * share.max().item():.2g} % by asperities of the {model}"
+        for model, share in shares.items()
+        if share is not None
+    ]
     return {
         "Hertz pressure": _range(film["hertz_pressure"], "Pa"),
         "film": f"{_range(film['film_thickness'], 'm')}, by {film['film_formula'].item()}; "
@@ -68,7 +72,7 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
         f"{_range(width / shortest)} times the shortest wave",
         "grid": f"{shortest / lines.spacing:.3g} points in the shortest wave, "
         f"{_range(width / lines.spacing)} in the contact width",
-        "load share": f"at most {share:.2g} % is carried by asperities of the line{by_surface}",
+        "load share": f"at most {', '.join(carried)}",
     }
 
 
@@ -96,7 +100,10 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     pressure = film["hertz_pressure"].max().item()
     waves, points = width / shortest, shortest / lines.spacing
     share = expected_load_share(film, rollers)
-    loaded, overloaded = (int((share > limit).sum()) for limit in (0.1, 1.0))
+    # No line stands for surfaces whose ridges run along rolling.
+    loaded, overloaded = (
+        int((share > limit).sum()) * lines.follows_rolling for limit in (0.1, 1.0)
+    )
     more = f"at {overloaded} more than all of it, " if overloaded else ""
     rubs, bends = int(rubbing(film).sum()), int(deformed(film).sum())
     found = {

@@ -5,7 +5,7 @@ import xarray as xr
 
 from lube.grid.operating_points import by_contact_model
 from lube.report.key_tables import markdown_table
-from lube.report.pages import percent
+from lube.report.pages import count, percent
 from lube.schema import POINT_DIMS
 from lube.study.uncertainty import spoken
 
@@ -80,7 +80,7 @@ def _durations(points):
         (name, *(_plus(least.sel(quantity=name, turns=turns).item()) for turns in least["turns"]))
         for name in least["quantity"].values
     ]
-    durations = (f"{turns:g} revolutions" for turns in least["turns"].values)
+    durations = (count(turns, "revolution") for turns in least["turns"].values)
     threshold = points["best_threshold"].item()
     error = percent(points["reading_error"].median().item())
     way = f"below {threshold:g} Ω" if threshold > 0.0 else "from the mean voltage"

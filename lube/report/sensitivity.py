@@ -7,7 +7,7 @@ from lube.grid.operating_points import by_contact_model
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION
 from lube.report.key_tables import markdown_table
 from lube.report.markdown import escaped
-from lube.report.pages import percent, rounded
+from lube.report.pages import count, percent, rounded
 from lube.schema import POINT_DIMS
 from lube.sensitivity.findings import LEFT, above_noise, narrowing
 from lube.sensitivity.samples import SEED
@@ -141,7 +141,7 @@ def _explained(records):
     for model, of_model in by_contact_model(records)["band_needed"].groupby("contact_model"):
         counts = ((words, np.sum(of_model.values == name)) for name, words in _BANDS.items())
         said = "; ".join(f"{number} {words}" for words, number in counts if number)
-        by = f"Of {of_model.size} {origin} records by contact of the {model}"
+        by = f"Of {count(of_model.size, f'{origin} record')} by contact of the {model}"
         yield f"{by}: {said} (`record_bands.nc`)."
     if is_exact.any():
         yield f"{is_exact.sum().item()} of them have no interval: they are taken as exact."

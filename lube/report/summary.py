@@ -163,7 +163,6 @@ def _film(film, first, shortest):
         "points": film["regime"].size,
         "outside": outside,
         "heating": heating if math.isfinite(heating) else None,
-        "heated": "slide_to_roll_ratio" in thickness.dims,
         "starving": 1.0 - starved.min().item() if starved is not None else None,
     }
 

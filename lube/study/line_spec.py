@@ -201,8 +201,8 @@ class LineSpec(StrictModel):
         least, most = 2.0 * self.spacing, self.travel
         if not least <= width < most:
             raise StudyError(
-                f"{what} is {width:.3g} m wide, need at least two grid spacings, {least:.3g} m, "
-                f"and less than a roller's perimeter, {most:.3g} m"
+                f"{what} is {_length(width)} wide, need at least two grid spacings, "
+                f"{_length(least)}, and less than a roller's perimeter, {_length(most)}"
             )
 
     def check_follows_rolling(self) -> None:
@@ -355,8 +355,9 @@ def _beyond_cutoffs(own, longest, shortest, key):
     if stated[0] <= stated[1]:
         name = "long_cutoff" if own.long_cutoff else "short_cutoff"
         raise StudyError(
-            f"{key(name)}: got a height stated for waves of {stated[0]:.3g} to {stated[1]:.3g} m, "
-            "need a long cutoff above the short one; by default they are the ends of the band"
+            f"{key(name)}: got a height stated for waves of {_length(stated[0])} to "
+            f"{_length(stated[1])}, need a long cutoff above the short one; by default they are "
+            "the ends of the band"
         )
     roll_off = own.roll_off_wavelength or max(longest, stated[0])
     exponent = 2.0 * own.hurst_exponent
@@ -369,33 +370,38 @@ def _beyond_cutoffs(own, longest, shortest, key):
     return math.sqrt(whole / within)
 
 
+def _length(value):
+    return with_unit(value, "m", 3)
+
+
 def _check_band(longest, shortest, points, spacing, key):
     if shortest < 2.0 * spacing * (1.0 - 1e-9):
         raise StudyError(
             f"roughness.points: got {points}, too coarse a grid: its spacing is "
-            f"{spacing:.3g} m, need at most half the shortest wavelength, {shortest:.3g} m"
+            f"{_length(spacing)}, need at most half the shortest wavelength of {_length(shortest)}"
         )
     if shortest >= longest:
         least = math.ceil(points * shortest / longest) + 1
         raise StudyError(
-            f"{key('shortest_wavelength')}: got {shortest:.3g} m, need less than the longest, "
-            f"{longest:.3g} m; if it is given in points, need {least} roughness.points or more"
+            f"{key('shortest_wavelength')}: got {_length(shortest)}, need less than the longest, "
+            f"{_length(longest)}; if it is given in points, need {least} roughness.points or more"
         )
 
 
 def _check_roll_off(longest, shortest, roll_off, key):
     if not shortest * (1.0 - 1e-9) <= roll_off <= longest * (1.0 + 1e-9):
         raise StudyError(
-            f"{key('roll_off_wavelength')}: got {roll_off:.3g} m, need one from the shortest to "
-            f"the longest wavelength, {shortest:.3g} to {longest:.3g} m"
+            f"{key('roll_off_wavelength')}: got {_length(roll_off)}, need one from the shortest to "
+            f"the longest wavelength, {_length(shortest)} to {_length(longest)}"
         )
 
 
 def _check_perimeter(perimeter, longest, shortest, roller):
     if perimeter < longest or math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
         raise StudyError(
-            f"rollers.{roller}.radius: got a perimeter of {perimeter:.3g} m, need room for the "
-            f"longest wave and for a whole number of waves of {shortest:.3g} to {longest:.3g} m"
+            f"rollers.{roller}.radius: got a perimeter of {_length(perimeter)}, need room for the "
+            f"longest wave and for a whole number of waves of {_length(shortest)} to "
+            f"{_length(longest)}"
         )
 
 
@@ -405,11 +411,11 @@ def _check_height_step(rms, step, name, roller):
         return
     if 1e-9 <= rms <= 1e-5:
         raise StudyError(
-            f"roughness.height_step: got {step:.3g} m, need {rms / 1e7:.3g} "
-            f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
+            f"roughness.height_step: got {_length(step)}, need {_length(rms / 1e7)} "
+            f"to {_length(rms / 1e3)} for a roughness of {_length(rms)}"
         )
     key = f"{name}.{roller.kinds[0]}" if roller.kinds else "composite_rms_roughness"
-    raise StudyError(f"rollers.{key}: got {rms:.3g} m, need an rms height of 1e-09 to 1e-05 m")
+    raise StudyError(f"rollers.{key}: got {_length(rms)}, need an rms height of 1 nm to 10 µm")
 
 
 def _check_distribution(own, key):

@@ -9,6 +9,7 @@ from markdown_it import MarkdownIt
 from studies import SMOKE_DATASETS
 
 from lube.archive.build import archive_page
+from lube.report.pages import render
 from lube.report.sensitivity import rests_on
 from lube.study.metadata import About
 
@@ -47,6 +48,17 @@ def test_every_dataset_and_the_code_are_named(page_of):
     assert "| `study/studies/mine.yaml` | the study as it was written |" in page
     assert "lube explain data/contact.nc --force 1600 --speed 100 --temperature 80" in page
     assert "measured records" not in page
+
+
+def test_the_examples_name_a_file_of_the_archive_where_there_are_no_lines(study):
+    lay = study.roughness.model_copy(update={"lay_ratio": 5.0, "lay_angle": 0.0})
+    ground = study.model_copy(update={"roughness": lay, "contact_model": ("surface",)})
+    assert not ground.has("contact")
+    texts = {"facts": "", "findings": "", "rests_on": "", "study_file": "g.yaml"}
+    known = {"licence": "", "paper": "", "datasets": {}, "commit": "", "changed": ()}
+    page = render("archive.md", study=ground, **texts, **known)
+    assert 'areal = xr.open_dataset("data/areal.nc")' in page and "contact.nc" not in page
+    assert "lube explain data/areal.nc --force 1600 --speed 100 --temperature 80\n```" in page
 
 
 def test_the_place_of_measured_records_is_named_and_refused_ones_with_their_reasons(

@@ -159,7 +159,7 @@ def test_both_show_themselves_and_travel_between_processes():
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", second={"rms_roughness": "20 um"}),
-            "rollers.second.rms_roughness: got 2e-05 m, need an rms height of 1e-09 to 1e-05 m",
+            "rollers.second.rms_roughness: got 20 µm, need an rms height of 1 nm to 10 µm",
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", longest_wavelength="contact width"),

@@ -58,7 +58,7 @@ def test_a_value_is_shown_with_its_place_size_and_interval(compared):
         "0.4 (0.3 to 0.5) against 0.5 (0.4 to 0.6), 20 %; all intervals overlap"
     )
     (line,) = compared(dataset(BASE), dataset([[0.2, 0.3], [0.7, np.nan]]))
-    assert line.endswith("; 1 intervals do not overlap")
+    assert line.endswith("; 1 interval does not overlap")
 
 
 def test_a_value_that_only_one_has_is_the_largest_difference(compared):
@@ -81,6 +81,12 @@ def test_what_only_one_has_is_named_and_the_rest_compared(compared):
         "temperature: 1 of 2 only in the first: 80",
     ]
     far = dataset(BASE, force=(1.0, 2.0))
+    # Where no label is in common, the dimensions may differ, too.
+    assert compared(one, far.isel(temperature=0, drop=True)) == [
+        "temperature: only in the first",
+        "force: 2 of 2 only in the first: 800; 1600",
+        "force: 2 of 2 only in the second: 1; 2",
+    ]
     assert compared(one, far) == [
         "force: 2 of 2 only in the first: 800; 1600",
         "force: 2 of 2 only in the second: 1; 2",

@@ -6,7 +6,7 @@ import xarray as xr
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from lube.grid.plausibility import expected_load_share, remarks
+from lube.grid.plausibility import expected_load_share, overview, remarks
 from lube.physics.excursions import mean_overlap
 from lube.stages import contact_statistics, roughness_lines
 
@@ -42,3 +42,21 @@ def test_roughness_that_the_oil_changes_too_much_is_remarked(study, film):
     lines = remarks(film.assign(rms_deformation=changed), *question)
     said = f"roughness: at 1 of {one.size} operating points the oil changes it"
     assert any(line.startswith(said) for line in lines)
+
+
+def test_no_load_on_the_line_is_stated_where_no_line_stands_for_the_surfaces(study, film):
+    thin = film.assign(film_thickness=0.1 * film["film_thickness"])
+    thin["surface_load_share"] = xr.full_like(film["film_thickness"], 0.123)
+    lay = {"lay_ratio": 5.0, "lay_angle": 0.0}
+    ground = study.roughness.model_copy(update=lay)
+    ground = study.model_copy(update={"roughness": ground, "contact_model": ("surface",)})
+    said = {}
+    for name, each in (("isotropic", study), ("ground", ground)):
+        question = thin, each.line_spec, each.rollers
+        shares = overview(*question)["load share"]
+        said[name] = shares, any("the line's asperities" in line for line in remarks(*question))
+    assert said["ground"] == ("at most 12 % by asperities of the surface", False)
+    assert said["isotropic"][0].endswith(
+        "% by asperities of the line, 12 % by asperities of the surface"
+    )
+    assert said["isotropic"][1]

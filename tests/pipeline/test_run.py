@@ -195,7 +195,7 @@ def test_benchmarks_are_measured_saved_and_drawn_when_asked_for(spare):
     spare.take_notebooks("bench*")
     before = spare.products()
     said = spare.run("benchmark")
-    assert "reading.nc and their figures are in" in said
+    assert "reading.nc, with figures, in" in said
     speed = load(spare.results / "speed.nc", "speed")
     reading = load(spare.results / "reading.nc", "reading")
     for name, values in (*speed.data_vars.items(), *reading.data_vars.items()):

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 import xarray as xr
+from studies import CONFIG
 
 from lube.report.summary import facts, findings, made
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import OwnRoughness
+from lube.study.study import load_study
 
 
 def test_the_numbers_of_the_study_are_stated(study, datasets):
@@ -19,7 +21,8 @@ def test_the_numbers_of_the_study_are_stated(study, datasets):
         "20,000 points",
         "critical thickness 5 nm, shear strength 1 MPa",
         "4 pairs of roughness lines, 1 revolution each; seed 20181109",
-        "a simulated rig: one pair of rollers turns 4 revolutions at every operating point; a",
+        "a simulated rig: one pair of rollers turns 4 revolutions at every operating point of the "
+        "slide-to-roll ratio nearest to 0; a",
     ):
         assert words in text
     assert "numpy 2" in made(study) and "The authors of lube" in made(study)
@@ -39,13 +42,17 @@ def test_two_oils_of_one_title_are_both_stated(study):
     table = lubricant_table(oils, study.operating_grid.temperature)
     text = facts(study.model_copy(update={"lubricants": tuple(oils)}), table)
     assert text.count("| **Lubricants** | Mobilgear SHC XMP 320: ") == 2
+    assert "| **Operating points** | 16 for each lubricant: 800 and" in text
 
 
 def test_several_pairs_and_their_drift_are_stated(study, datasets):
     rig = study.rig.model_copy(update={"pairs": 3, "drift": 0.3})
     text = facts(study.model_copy(update={"rig": rig}), datasets["lubricant"])
-    assert "3 pairs of rollers turn 4 revolutions at every operating point" in text
+    assert "3 pairs of rollers turn 4 revolutions at every operating point of the" in text
     assert "each revolution renews 30 % of the roughness variance; a" in text
+    rolling = study.operating_grid.model_copy(update={"slide_to_roll_ratio": (0.0,)})
+    text = facts(study.model_copy(update={"operating_grid": rolling}), datasets["lubricant"])
+    assert "turns 4 revolutions at every operating point; a" in text
 
 
 def test_unequal_rollers_many_levels_and_measured_records_are_stated(study, datasets):
@@ -73,6 +80,24 @@ def test_rollers_with_a_roughness_of_their_own_are_stated(study, datasets):
     assert "first: Hurst exponent 0.7; second: Hurst exponent 0.9, roll-off at 200 µm, skew" in text
     band = "waves 420 µm (contact width at the largest force) to 157 µm"
     assert f"skewness 0 and kurtosis 4; {band} |" in text
+
+
+def test_rollers_with_one_measured_map_are_equal(datasets):
+    study = load_study(CONFIG / "measured.yaml")
+    # As jobs load it: each roller has what was read of the map as an object of its own.
+    study = load_study(CONFIG / "measured.yaml", **study.readings)
+    assert "| two equal rollers: radius 50 mm" in facts(study, datasets["lubricant"])
+
+
+def test_ground_rollers_have_no_lines(study, datasets):
+    lay = study.roughness.model_copy(update={"lay_ratio": 5.0, "lay_angle": 0.0})
+    ground = study.model_copy(update={"roughness": lay, "contact_model": ("surface",)})
+    text = facts(ground, datasets["lubricant"])
+    assert "| **Roughness** | Hurst exponent 0.7; waves 420 µm" in text
+    assert "lines" not in text.partition("**Experiment**")[0]
+    assert "| **Roughness lines** | 20,000 points around the first roller, Hurst exponent" in (
+        facts(study, datasets["lubricant"])
+    )
 
 
 @pytest.fixture
@@ -125,14 +150,23 @@ def test_the_answers_are_those_of_the_datasets(study, results):
         "Against a simulated rig (3 records of 1 pair of rollers) the simulation is on average "
         "1.2 percentage points too low; the rms difference is 2.4 points. 75 % of the records lie "
         "within their 95 % prediction intervals; with a correct model, 60 % to 100 % would.",
-        "has both limits for 1 of 3 records; contact is too rare for an upper limit in 1; contact "
-        "is too frequent for a lower limit in 1.",
+        "has both limits for 1 of 3 records; contact is too rare, or the film among the study's "
+        "thickest, for an upper limit in 1; contact is too frequent for a lower limit in 1.",
         "| normal force | 800 N: 0.01 %; 1600 N: 5.4 % |",
         "| 1600 N, 100 r/min, 80 °C, slide-to-roll ratio 0 | 0.283 µm | 1 | **0 %** "
         "(0 % to 0.01 %) | ",
     ):
         assert words in text
     assert text.count(" | 43.2 % to 44.2 % (2 records) |") == 1 and text.count(" | – |") == 1
+
+
+def test_a_single_operating_point_is_stated_as_one(study, results):
+    one = {"slide_to_roll_ratio": [0], "temperature": [0], "speed": [1], "force": [0]}
+    parts = {name: results[name].isel(one, missing_dims="ignore") for name in ("film", "contact")}
+    text = findings(study.model_copy(update={"traces": study.traces[:1]}), results | parts)
+    assert "With the film formula `paper`, at the one operating point:" in text
+    assert "µm thick, the lambda ratio 1.\n" in text
+    assert "The regime is piezoviscous and rigid.\n" in text
 
 
 def test_points_at_which_the_model_does_not_hold_are_stated(study, results):
@@ -158,6 +192,8 @@ def test_points_whose_roughness_is_not_answered_linearly_are_counted(study, resu
     film = results["film"].assign(film_thickness=results["film"]["film_thickness"] + 0.0 * slips)
     half = film["film_thickness"].isel(film_formula=0, drop=True) / 2.0
     text = findings(study, results | {"film": film.assign(rms_deformation=half.where(slips > 0))})
+    # The film has a dimension of slip although no heating is applied.
+    assert "Heating of the oil at the inlet, which is not applied, would make" in text
     assert "At 8 of the 16 operating points the oil changes the roughness by more than 10 %" in text
 
 

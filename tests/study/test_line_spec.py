@@ -153,16 +153,16 @@ def test_the_band_is_said(study_with):
 OWN = "rollers.second.roughness"
 STEEL = {"radius": "50 mm", "young_modulus": "210 GPa", "poisson_ratio": 0.3}
 REFUSED = [
-    ("roughness.long_cutoff", "2 um", "roughness.long_cutoff: got a height stated for waves of 2e"),
+    ("roughness.long_cutoff", "2 um", "roughness.long_cutoff: got a height stated for waves of 2 "),
     ("roughness.short_cutoff", "1 mm", "roughness.short_cutoff: got a height stated for waves of"),
     (OWN, {"long_cutoff": "1 um", "short_cutoff": "2 um"}, f"{OWN}.long_cutoff: got a height"),
     ("roughness.roll_off_wavelength", "1 mm", "roughness.roll_off_wavelength: got 1 mm, need"),
     ("roughness.roll_off_wavelength", "3 um", "from the shortest to the longest wavelength, 3.14"),
     (OWN, {"roll_off_wavelength": "1 mm"}, f"{OWN}.roll_off_wavelength: got 1 mm, need one"),
-    (OWN, {"longest_wavelength": "3 um"}, "got 10 points, need less than the longest, 3e-06 m"),
+    (OWN, {"longest_wavelength": "3 um"}, "got 10 points, need less than the longest, 3 µm"),
     (OWN, {"shortest_wavelength": "1 mm"}, f"{OWN}.shortest_wavelength: got 1 mm, need less"),
-    (OWN, {"shortest_wavelength": "0.1 um"}, "too coarse a grid: its spacing is 3.14e-07 m"),
-    (OWN, {"longest_wavelength": "1 m"}, "rollers.second.radius: got a perimeter of 0.314 m,"),
+    (OWN, {"shortest_wavelength": "0.1 um"}, "too coarse a grid: its spacing is 0.314 µm"),
+    (OWN, {"longest_wavelength": "1 m"}, "rollers.second.radius: got a perimeter of 314 mm,"),
     (OWN, {"kurtosis": 1.2}, f"{OWN}.kurtosis: got 1.2 with a skewness of 0, need at least 1.5"),
     (
         "roughness.skewness",

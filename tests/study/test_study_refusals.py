@@ -66,20 +66,20 @@ COUNTS = [
 
 GRIDS = [
     ("roughness.points", 5000, "need 7478 roughness.points or more"),
-    ("roughness.longest_wavelength", "1 um", "need less than the longest, 1e-06 m; if it is"),
+    ("roughness.longest_wavelength", "1 um", "need less than the longest, 1 µm; if it is"),
     ("roughness.shortest_wavelength", "1 mm", "got 1 mm, need less than the longest"),
     ("roughness.shortest_wavelength", "1e308 points", "got 1e308 points, need a value at least 2"),
     ("roughness.longest_wavelength", "long", f", or the words `{AUTOMATIC_WAVELENGTH}`"),
-    ("roughness.longest_wavelength", "1 m", "got a perimeter of 0.314 m, need"),
+    ("roughness.longest_wavelength", "1 m", "got a perimeter of 314 mm, need"),
     ("operating_grid.temperature", {"values": [101], "units": "degC"}, f"{OIL}: got 101 degC"),
     (
         "rollers.first.rms_roughness",
         "0.4 mm",
-        "got 0.4 mm, need an rms height of 1e-09",
+        "got 0.4 mm, need an rms height of 1 nm",
     ),
     ("rollers.first.rms_roughness", "0,2 um", "with a decimal point: '0.2 um'"),
     ("operating_grid.force", {"values": [-5], "units": "kN"}, "got -5 kN, need a value above 0 N"),
-    ("roughness.height_step", "1 nm", "got 1 nm, need 2e-14 to 2e-10 m"),
+    ("roughness.height_step", "1 nm", "got 1 nm, need 0.02 pm to 0.2 nm"),
 ]
 
 NAMES = [
@@ -198,7 +198,7 @@ def test_lays_that_a_line_cannot_take_are_refused(paper_with):
             *(ridges, (angle, "0 deg"), surface, ("experiment.manifest", "records.csv")),
             "experiment.manifest: got ",
         ),
-        (("roughness.lay_ratio", 900), (angle, "90 deg"), "got a perimeter of 0.314 m, need room"),
+        (("roughness.lay_ratio", 900), (angle, "90 deg"), "got a perimeter of 314 mm, need room"),
         (
             *(("roughness.lay_ratio", 50), (angle, "30 deg"), surface),
             "need one 7.07 times as long, or shorter ridges",
@@ -216,6 +216,6 @@ def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_wi
     for *changes, message in [
         ((forces, [1e-3, 1600]), trace, "operating_grid.force: the contact at 0.001 N"),
         ((forces, [1600, 1e10]), trace, (longest, "0.4 mm"), "force: the contact at 1e+10 N"),
-        (("rollers.second.radius", "25 mm"), (longest, "0.2 m"), "got a perimeter of 0.157 m"),
+        (("rollers.second.radius", "25 mm"), (longest, "0.2 m"), "got a perimeter of 157 mm"),
     ]:
         assert message in refusal(paper_with(*changes))

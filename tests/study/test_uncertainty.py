@@ -137,7 +137,7 @@ def test_a_range_needs_a_source(tmp_path):
         ),
         (
             {"uncertainty": {"force": {"range": "-99.9999 % to 0 %"} | SOURCE}},
-            "force.range: the contact at 0.0001 N is 1.05e-07 m wide, need at least two grid",
+            "force.range: the contact at 0.0001 N is 0.105 µm wide, need at least two grid",
         ),
         (
             {
