@@ -153,7 +153,7 @@ _ROWS = (
     ),
     Stage(
         "areal",
-        "contact of the surfaces that the lines stand for, several minutes",
+        "contact of the surfaces that the lines stand for, a minute or more",
         inputs=("film",),
         inputs_with={"surface_response": "gap.is_answered"},
         values=_LINES | _CONTACT | _named("rollers.length"),
