@@ -134,7 +134,8 @@ def touching_strips(
     seen = np.zeros((reach + 1 + around, width), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
     heights, filled = np.empty(seen.shape, np.float32), np.full(seen.shape[0], -1)
-    known = np.empty((4, reach + 1 + around), np.float32)  # of a row, and of it and those before it
+    # Least and greatest covariance of each row, and of the group of rows that ends with it.
+    known = np.empty((4, reach + 1 + around), np.float32)
     for row in range(known.shape[1]):
         known[0, row], known[1, row] = covariances[0][row].min(), covariances[0][row].max()
         known[2, row] = known[0, max(row - GROUP + 1, 0) : row + 1].min()
