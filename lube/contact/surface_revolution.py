@@ -1,0 +1,173 @@
+"""Contact of a pair of whole rollers over a revolution of pure rolling, drawn surface and all.
+
+Rollers of one size that roll without slip meet with the same points in every revolution. So only
+the sum of both surfaces matters, and it passes through the contact as one surface. It is put
+together of independent pieces, each as wide and as long as a few of the longest waves. The joins
+cut few contacts.
+
+Of a piece only summits are kept whose boundary layer breaks. In contact they are paraboloids. Where
+contacts merge, below a lambda ratio of some 1.5, each summit still counts as one.
+"""
+
+import math
+import os
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+import scipy.ndimage
+import xarray as xr
+
+from lube.contact.surface_answers import COARSEST
+from lube.contact.strip_film import COLUMNS
+from lube.contact.surface_strip import mean_breaking_curvature, strip_films
+from lube.ehl.line_contact import one_blas_thread
+from lube.grid.gap import PLAIN, Gap
+from lube.kernels.summits import Summits, connected_summits, passing_contacts
+from lube.study.rollers import BoundaryLayer
+from lube.surfaces.rough_surface import longest_waves, rough_surface, surface_waves
+from lube.surfaces.synthetic import LineSpecLike
+from lube.threads import on_threads
+from lube.types import Array
+
+ENOUGH = 100.0
+"""Breakthroughs expected in the strip from which on lower summits are left out: contact is certain,
+and its resistance far below that of the leads."""
+THICKER = 1.05
+"""Ratio of neighbouring films among which this number is looked for."""
+
+
+def revolution_contact(
+    spec: LineSpecLike,
+    length: float,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    seeds: Iterable[int],
+    gap: Gap = PLAIN,
+    threads: int | None = None,
+) -> Array:
+    """Find the length of contact over a revolution of one pair of rollers, at some films.
+
+    Parameters
+    ----------
+    spec, length, film, boundary_layer, gap, threads
+        As in `lube.contact.surface_strip.surface_contact`; the films over ``operating_point``.
+        Both rollers have the same perimeter.
+    seeds : iterable of int
+        Seed of the pair.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (points, T), float32: summed diameters of contacts whose layer breaks, m, at T equal
+        steps of a revolution; NaN where the film is not known.
+    """
+    strips = strip_films(spec, film, gap)
+    known = {point: strip for point, strip in enumerate(strips) if strip}
+    found = np.full((len(strips), 1), np.nan, np.float32)
+    if not known:
+        return found
+    wide = max(strip.width for strip in known.values())
+    multiple = 2**COARSEST if gap.is_answered else 1
+    surface = rough_surface(spec, wide, multiple=multiple)
+    sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
+    with one_blas_thread():
+        passages = {
+            point: _Passage(strip, spec, length, surface, sharp) for point, strip in known.items()
+        }
+    steps = round(spec.points[0] * spec.spacing / surface.spacing[1])
+    rows = max(int(length / surface.spacing[0]), 1)
+    found = np.full((len(strips), steps), np.nan, np.float32)
+    found[list(known)] = 0.0
+    least = min(passage.lowest_drawn for passage in passages.values())
+    many = threads or os.cpu_count() or 1
+
+    def of_column(number):
+        """Contacts of all pieces side by side that begin at one column."""
+        columns = min(steps - number * surface.points[1], surface.points[1])
+        sums = {point: passage.empty() for point, passage in passages.items()}
+        for piece, begin in enumerate(range(0, rows, surface.points[0])):
+            generator = np.random.default_rng(np.random.SeedSequence((*seeds, number, piece)))
+            heights, curvatures, waves = surface.draw(generator)
+            summits = connected_summits(heights, curvatures, surface.spacing, least)
+            inside = np.flatnonzero((summits.row < rows - begin) & (summits.column < columns))
+            by_column = inside[np.argsort(summits.column[inside], kind="stable")]
+            summits = _selected(summits, by_column)
+            for point, passage in passages.items():
+                passage.add(summits, waves, sums[point])
+        return sums
+
+    numbers = range(math.ceil(steps / surface.points[1]))
+    for begin in range(0, len(numbers), 4 * many):  # few pieces are in memory at once
+        some = numbers[begin : begin + 4 * many]
+        for number, sums in zip(some, on_threads(of_column, some, threads), strict=True):
+            for point, contact in sums.items():
+                first = passages[point].first_step - number * surface.points[1]
+                np.add.at(found[point], (first + np.arange(contact.size)) % steps, contact)
+    return found
+
+
+class _Passage:
+    """Summits of pieces of a surface on their way through the strip of an operating point."""
+
+    def __init__(self, strip, spec, length, surface, sharp):
+        along = surface.spacing[1]
+        self._film = strip.films(along) / spec.height_step
+        self._sharp = strip.breaking_curvatures(along, sharp) / spec.height_step
+        self._lowest = _lowest(strip, spec, length, sharp) / spec.height_step
+        self._has_edges, self._answer = strip.has_edges, strip.answered(surface, (1, 1))
+        self.lowest_drawn = self._lowest
+        if self._answer:
+            self.lowest_drawn -= _most_added(spec, strip) / spec.height_step
+        # Steps at which a contact may be in the strip.
+        extent = math.ceil(0.5 * longest_waves(spec)[1] / along)
+        self.first_step = -surface.points[1] - extent
+        self._steps = surface.points[1] + self._film.size + 2 * extent
+
+    def empty(self):
+        """Contact lengths to which contacts are added."""
+        return np.zeros(self._steps)
+
+    def add(self, summits, waves, contact):
+        """Add the contacts of a piece."""
+        summits = _selected(summits, np.flatnonzero(summits.height > self.lowest_drawn))
+        by_oil, shapes = (np.zeros((size, 0)) for size in (summits.row.size, self._film.size))
+        if self._answer:
+            oil = self._answer.of_waves([waves])
+            places = np.stack([summits.row, summits.column]) / (1 << oil.shift)
+            fields = np.moveaxis(oil.fields, -1, 0)
+            by_oil = [scipy.ndimage.map_coordinates(one, places, order=1) for one in fields]
+            by_oil = np.stack(by_oil, axis=1)
+            columns = np.arange(self._film.size) / (1 << oil.shift)
+            nodes = np.arange(oil.shapes.shape[0])
+            shapes = np.stack([np.interp(columns, nodes, one) for one in oil.shapes.T], axis=1)
+        strip = self._film, self._sharp, shapes, self._has_edges
+        passing_contacts(summits, by_oil, *strip, self.first_step, contact)
+
+
+def _selected(summits, some):
+    """Some summits, given by their numbers, in this order."""
+    number = np.full(summits.row.size, -1, np.int32)
+    number[some] = np.arange(some.size)
+    kept = Summits(*(each[some] for each in summits))
+    higher = number[kept.higher]
+    return kept._replace(higher=higher, saddle=np.where(higher < 0, -np.inf, kept.saddle))
+
+
+def _most_added(spec, strip):
+    """Height that the oil adds to the surface at most, m: five times the greatest rms height."""
+    answer, square = strip.answers[0], 0.0
+    for roller in range(2):
+        along, across, power = surface_waves(spec, roller)
+        filters = answer.filters_at(along, across)
+        by_oil = np.einsum("nm,wm->nw", answer.shapes, filters)
+        square = square + np.sum(np.abs(by_oil) ** 2 * power, axis=1)
+    return 5.0 * math.sqrt(square.max())
+
+
+def _lowest(strip, spec, length, sharp):
+    """Height above which summits are looked at, m."""
+    drawn, times = replace(strip, answers=None), 1.0
+    while drawn.thicker(times).expected(spec, length, sharp)[1] > ENOUGH:
+        times *= THICKER
+    return times * strip.films(strip.width / COLUMNS).min()
