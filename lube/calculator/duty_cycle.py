@@ -208,9 +208,8 @@ def _conditions(columns, rollers):
 
 def _film(given, rollers, oil, film_formula, choices):
     """Film table over ``point``, with the radii of each point."""
-    *point, radius, second_radius = given.values()
-    pair = rollers.pair.with_radii(radius, second_radius)
-    table = film_of_oil(oil, pair, point, [film_formula], **choices)
+    pair = rollers.pair.with_radii(given["radius"], given["second_radius"])
+    table = film_of_oil(oil, pair, given, [film_formula], **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     return table.assign(force=given["force"])
 

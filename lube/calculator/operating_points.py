@@ -114,7 +114,7 @@ def film_in_si(
     model = film_model(rollers, choices or Choices(), slip)
     table = film_of_oil(oil, rollers.pair, point, formulas, **model)
     dims = ("film_formula", "temperature", "speed", "force")
-    table = table.assign_coords(force=point[0], speed=point[1])
+    table = table.assign_coords(force=point["force"], speed=point["speed"])
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
 
@@ -145,9 +145,8 @@ def film_of_oil(
     oil: Oil, pair: RollerPair, point: Point, formulas: Sequence[str], **choices: Any
 ) -> xr.Dataset:
     """Film table with the oil's viscosity; the point's numbers are in N, rpm and degC."""
-    force, speed, temperature = point
-    properties = oil.at(temperature)
-    table = film_at(properties, pair, force, speed, formulas, **choices)
+    properties = oil.at(point["temperature"])
+    table = film_at(properties, pair, point["force"], point["speed"], formulas, **choices)
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 
@@ -286,8 +285,7 @@ def contact_probability(
     gap = choices.gap
     check_realisations(realisations, seed)
     assumed = Assumptions(bands, rollers, oil, choices, _names(film_formula)[0], seed)
-    point = conditions(force, speed, temperature, rollers.pair.first.radius)
-    assumed.check(dict(zip(("force", "speed", "temperature"), point, strict=True)))
+    assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     found = table[FILM_VARIABLES]
     if "line" in choices.models:
