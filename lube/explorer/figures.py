@@ -18,7 +18,6 @@ from bokeh.models import (
 )
 from bokeh.palettes import Cividis256
 from bokeh.plotting import figure
-from bokeh.themes import Theme
 
 from lube.explorer.content import CHOICES, MODEL
 from lube.physics.regimes import regime
@@ -35,29 +34,6 @@ _MOST_DECADES = 8
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _RAREST = 1e-20
 """Lowest probability on the axes: at very thick films probabilities fall below any number."""
-_FONT = "system-ui, sans-serif"
-THEME = Theme(
-    json={
-        "attrs": {
-            "Axis": {
-                "axis_label_text_font": _FONT,
-                "axis_label_text_font_size": "14px",
-                "axis_label_text_font_style": "normal",
-                "major_label_text_font": _FONT,
-                "major_label_text_font_size": "13px",
-                "minor_tick_line_color": None,
-            },
-            "Grid": {"grid_line_color": "#E4E4E4"},
-            "Plot": {
-                "height": 320,
-                "sizing_mode": "stretch_width",
-                "outline_line_color": "#94A3B8",
-            },
-            "BaseColorBar": {"major_label_text_font_size": "13px"},
-        }
-    }
-)
-"""Look of all figures, legible on a phone."""
 _POINT = (
     *"x film mean lower upper limit lambda width M L name outside falling deformed rubbing".split(),
     *CHOICES,
