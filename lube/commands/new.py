@@ -33,7 +33,6 @@ _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+)?"
 _NUMBERS = re.compile(rf"((?:{_NUMBER},?\s+)*{_NUMBER})\s*(1/\w+|[^\d\s/,.].*)")
 
 
-
 def new_study(
     path: File,
     quantities: Mapping[str, str],
