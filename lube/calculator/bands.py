@@ -48,6 +48,8 @@ class Assumptions:
     ----------
     wanted : bool
         Whether there is a band.
+    rollers, choices, seed
+        As given.
 
     Raises
     ------
@@ -68,6 +70,7 @@ class Assumptions:
         if not isinstance(bands, bool | Mapping):
             raise StudyError(f"bands: got {shown(bands)}, need True, False or a dict of ranges")
         self.wanted = bands is not False
+        self.rollers, self.choices, self.seed = rollers, choices, seed
         ranges = RANGES if bands is True else dict(bands or {})
         uncertain = validate(Uncertainty, ranges, "bands", StudyError)
         if uncertain.resistivity:

@@ -143,7 +143,7 @@ def duty(
     table = _film(given, rollers, oil, formula, film_model(rollers, choices, slip))
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
     if "line" in choices.models:
-        contact = ensemble(table, rollers, realisations, seed, gap=gap)
+        contact = ensemble(table, rollers, realisations, seed, 0.0, gap)
         on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
         width = 2.0 * table["contact_half_width"].max().item()
         whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))

@@ -25,7 +25,7 @@ from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
-from lube.grid.gap import PLAIN, Gap
+from lube.grid.gap import Gap
 from lube.grid.plausibility import remarks
 from lube.inference.surface_scatter import revolution_size, surface_prediction
 from lube.schema import LIMITS
@@ -331,12 +331,7 @@ def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.D
 
 
 def ensemble(
-    table: xr.Dataset,
-    rollers: Rollers,
-    realisations: int,
-    seed: int,
-    slip: float = 0.0,
-    gap: Gap = PLAIN,
+    table: xr.Dataset, rollers: Rollers, realisations: int, seed: int, slip: float, gap: Gap
 ) -> xr.Dataset:
     """Probabilities at some films and contact widths, and their intervals.
 
@@ -349,10 +344,10 @@ def ensemble(
         The two rollers, for their lines and boundary layer.
     realisations, seed : int
         As in `contact_probability`.
-    slip : float, optional
+    slip : float
         Slide-to-roll ratio.
-    gap : Gap, optional
-        How film and roughness make up the gap; by default flat films, and lines as drawn.
+    gap : Gap
+        How film and roughness make up the gap.
 
     Returns
     -------

@@ -134,10 +134,8 @@ def _round_numbers(low, high):
     digits = next(digits for most, digits in _DIGITS.items() if decades <= most)
     step = math.ceil(decades / _MOST_DECADES)
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
-    numbers = [
-        float(f"{digit}e{power}") for power in powers if power % step == 0 for digit in digits
-    ]
-    return [number for number in numbers if low <= number <= high]
+    found = [float(f"{digit}e{power}") for power in powers if power % step == 0 for digit in digits]
+    return [number for number in found if low <= number <= high]
 
 
 def _percent(share):
@@ -165,9 +163,8 @@ def _points(plot, source, x, y, size=8, **look):
 def _all_points(plot, sources, x, y, around="grid"):
     """Draw the chosen operating point, and others, which show their names and can be chosen."""
     small = _points(plot, sources[around], x, y, size=6 if around == "grid" else 8)
-    _points(
-        plot, sources["chosen"], x, y, size=15, fill_color=COLOURS["vermilion"], line_color="black"
-    )
+    look = {"fill_color": COLOURS["vermilion"], "line_color": "black"}
+    _points(plot, sources["chosen"], x, y, size=15, **look)
     plot.add_tools(
         HoverTool(renderers=[small], tooltips="<b>@name</b>", point_policy="snap_to_data"),
         TapTool(renderers=[small]),
@@ -197,9 +194,8 @@ def _probabilities(plot, sources, x, around):
 
 
 def _whiskers(plot, source, x, colour, width):
-    whisker = Whisker(
-        base=x, lower="lower", upper="upper", source=source, line_color=colour, line_width=width
-    )
+    look = {"line_color": colour, "line_width": width}
+    whisker = Whisker(base=x, lower="lower", upper="upper", source=source, **look)
     whisker.upper_head.size = whisker.lower_head.size = 8
     whisker.upper_head.line_color = whisker.lower_head.line_color = colour
     plot.add_layout(whisker)
@@ -254,9 +250,8 @@ def _master_curve(sources, ratios, shares):
     )  # fmt: skip
     _percent_axis(plot)
     source = sources["master"]
-    plot.varea(
-        "lambda", "lower", "upper", source=source, fill_color=COLOURS["orange"], fill_alpha=0.35
-    )
+    light = {"fill_color": COLOURS["orange"], "fill_alpha": 0.35}
+    plot.varea("lambda", "lower", "upper", source=source, **light)
     grey = {"line_color": COLOURS["grey"], "line_width": 2}
     plot.line("lambda", "narrow", source=source, line_dash="dotted", **grey)
     plot.line("lambda", "wide", source=source, line_dash="dashed", **grey)

@@ -94,9 +94,8 @@ def _execute_apart(*arguments):
     The notebook cannot change this process or the next notebook, and if its memory runs out, this
     process is still there to report it. What is imported here need not be imported again.
     """
-    process = multiprocessing.get_context("fork").Process(
-        target=_execute, args=arguments, daemon=True
-    )
+    fork = multiprocessing.get_context("fork")
+    process = fork.Process(target=_execute, args=arguments, daemon=True)
     process.start()
     process.join()
     return process.exitcode

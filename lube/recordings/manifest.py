@@ -21,6 +21,8 @@ from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
 Share = Annotated[float, quantity(None, least=0.0, most=1.0)]
+_Unit = Annotated[str, checked_text(electrical_quantity, "unit of voltage or resistance")]
+_Offset = Annotated[str, checked_text(parse_electrical, "quantity in V or ohm, as the record is")]
 
 _UNITS = (
     dict.fromkeys(("force", "force_tolerance"), "N")
@@ -47,9 +49,7 @@ class Row(StrictModel):
     """name, without its unit, of the column, variable or channel to read; in TDMS also
     `group/channel`; by default the first voltage or resistance
     """
-    unit: (
-        Annotated[str, checked_text(electrical_quantity, "unit of voltage or resistance")] | None
-    ) = None
+    unit: _Unit | None = None
     """unit of that channel; overrides the one in the file, and decides between voltage and
     resistance where the channel's name does not
     """
@@ -57,9 +57,7 @@ class Row(StrictModel):
     """factor of an amplifier between rig and recorder, below 0 if it inverts: recorded = gain ×
     true + offset
     """
-    offset: Annotated[
-        str, checked_text(parse_electrical, "quantity in V or ohm, as the record is")
-    ] = 0.0
+    offset: _Offset = 0.0
     """recorded value when the true value is 0, a voltage or a resistance as the channel is:
     true = (recorded - offset) / gain
     """
@@ -203,13 +201,11 @@ def _csv_rows(path):
 
 def _columns(cells, where):
     """Units of the columns by name, None where there is none, in the order of the columns."""
-    columns = {}
+    columns, known = {}, Row.model_fields
     for cell in cells:
         name, units = header_cell(cell)
-        if name not in Row.model_fields:
-            raise DataError(
-                f"{where}: unknown column {shown(cell)}, {right_one(name, Row.model_fields)}"
-            )
+        if name not in known:
+            raise DataError(f"{where}: unknown column {shown(cell)}, {right_one(name, known)}")
         if name in columns:
             raise DataError(f"{where}: column {name!r} is repeated")
         _check_units(name, units, where)

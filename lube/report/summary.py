@@ -324,10 +324,8 @@ def _measured_near(comparison, point):
     """Finite contact shares of the records near an operating point."""
     names = {name: f"{name}_level" for name in ("force", "speed", "temperature")}
     names |= {name: name for name in ("lubricant", "slide_to_roll_ratio")}
-    near = np.logical_and.reduce(
-        [comparison[name].values == point[level] for level, name in names.items()]
-    )
-    shares = comparison["measured_share"].values[near]
+    near = [comparison[name].values == point[level] for level, name in names.items()]
+    shares = comparison["measured_share"].values[np.all(near, axis=0)]
     return shares[np.isfinite(shares)]
 
 

@@ -186,11 +186,8 @@ def run(
     """
     values = deviations(deviating.factors, unit)
     films = deviating.films(over_run(values), points, **model.shape(deviating.study.line_spec))
-    of_samples = [
-        (runs[same], film.isel(run=same))
-        for runs, film in films
-        for same in _same_samples(unit[runs])
-    ]
+    parts = ((runs, film, same) for runs, film in films for same in _same_samples(unit[runs]))
+    of_samples = [(runs[same], film.isel(run=same)) for runs, film, same in parts]
 
     def of_sample(sample):
         runs, film = sample

@@ -136,9 +136,8 @@ class LineSpec(StrictModel):
     def has_like_lines(self) -> bool:
         """Whether both lines differ by their rms height and their number of points alone."""
         first, second = self.lines
-        return first == second.model_copy(
-            update={"rms_height": first.rms_height, "points": first.points}
-        )
+        alike = {"rms_height": first.rms_height, "points": first.points}
+        return first == second.model_copy(update=alike)
 
     @property
     def is_isotropic(self) -> bool:

@@ -453,7 +453,6 @@ def _beside(record_path, name):
     folder = record_path.parent
     inside = (folder / name).resolve().is_relative_to(folder.resolve())
     if Path(name).is_absolute() or not inside:
-        raise RecordError(
-            f"{record_path}: viscosity.csv: got {shown(name)}, need a file in the record's folder"
-        )
+        came = f"viscosity.csv: got {shown(name)}"
+        raise RecordError(f"{record_path}: {came}, need a file in the record's folder")
     return folder / name

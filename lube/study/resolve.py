@@ -26,9 +26,7 @@ from lube.types import File
 _OF_BOTH = "composite_rms_roughness"
 """Key of the roughness of both rollers together."""
 
-_PATHS = {("rollers", name, "topography", "file") for name in ROLLERS} | {
-    ("experiment", "manifest")
-}
+_PATHS = {("experiment", "manifest"), *(("rollers", one, "topography", "file") for one in ROLLERS)}
 """Keys whose values are paths, apart from the list of lubricants."""
 
 _OF_ONE_STUDY = {"title", "summary", "date", "doi"}
