@@ -87,5 +87,7 @@ def test_intervals_are_the_same_each_time_for_any_seed():
     for seed in (0, 1, 2**40):
         one, other = (sobol(NAMES, ishigami, seed, base_samples=64)[0] for _ in range(2))
         np.testing.assert_array_equal(one["total_effect_error"], other["total_effect_error"])
-        first, second = (morris(NAMES, ishigami, seed, {})["elementary_effect_error"] for _ in range(2))
+        first, second = (
+            morris(NAMES, ishigami, seed, {})["elementary_effect_error"] for _ in range(2)
+        )
         np.testing.assert_array_equal(first, second)
