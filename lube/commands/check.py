@@ -116,10 +116,8 @@ def _expected_run(study, points):
         seconds += points * (9.0 if study.gap.is_answered else 2.0)
     cores = os.cpu_count()
     minutes = max(1, round(seconds / 60.0 / cores))
-    return (
-        f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate; up to "
-        f"{0.4 + size:.1f} GB for each job"
-    )
+    time = f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate"
+    return f"{time}; up to {0.4 + size:.1f} GB for each job"
 
 
 def _many(number, name):

@@ -249,12 +249,8 @@ class StudyFiles:
     def _stages_of(self, target, figures):
         """List the stages whose files a target names, or draws."""
         path = os.path.normpath(target)
-        drawn = {
-            kind
-            for name, figure in figures.items()
-            if path in self.products([name])
-            for kind in figure.datasets
-        }
+        asked = (one for name, one in figures.items() if path in self.products([name]))
+        drawn = {kind for figure in asked for kind in figure.datasets}
         return [
             name
             for name, row in STAGES.items()

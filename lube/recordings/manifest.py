@@ -24,12 +24,9 @@ Share = Annotated[float, quantity(None, least=0.0, most=1.0)]
 _Unit = Annotated[str, checked_text(electrical_quantity, "unit of voltage or resistance")]
 _Offset = Annotated[str, checked_text(parse_electrical, "quantity in V or ohm, as the record is")]
 
-_UNITS = (
-    dict.fromkeys(("force", "force_tolerance"), "N")
-    | dict.fromkeys(("speed", "speed_tolerance"), "rpm")
-    | {"temperature": "degC", "temperature_tolerance": "K"}
-    | {"sampling_interval": "s", "offset": "mV"}
-)
+_UNITS = {"force": "N", "speed": "rpm", "temperature": "degC", "offset": "mV"}
+_UNITS |= {"force_tolerance": "N", "speed_tolerance": "rpm", "temperature_tolerance": "K"}
+_UNITS |= {"sampling_interval": "s"}
 """Columns whose header needs a unit, with an example; an offset may also be in ohm."""
 
 ORIGINS = ("measured", "simulated")

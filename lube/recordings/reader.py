@@ -86,10 +86,8 @@ def _time_fault(times, before, interval):
     if uniform[index]:
         return None
     before, now = times[index - 1] if index else before, times[index]
-    return index, (
-        f"time goes from {before:.9g} s to {now:.9g} s, need uniform steps of about "
-        f"{interval:.6g} s (gaps are not filled)"
-    )
+    needed = f"need uniform steps of about {interval:.6g} s (gaps are not filled)"
+    return index, f"time goes from {before:.9g} s to {now:.9g} s, {needed}"
 
 
 def open_recording(

@@ -247,10 +247,8 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     """
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
     width = 2.0 * float(rollers.contact_half_width(largest_force))
-    lines = tuple(
-        _rough_line(rollers, roughness, name, rms, spacing, width)
-        for name, rms in zip(ROLLERS, rollers.rms_heights, strict=True)
-    )
+    each = zip(ROLLERS, rollers.rms_heights, strict=True)
+    lines = tuple(_rough_line(rollers, roughness, *one, spacing, width) for one in each)
     return LineSpec(lines=lines, spacing=spacing, height_step=roughness.height_step)
 
 

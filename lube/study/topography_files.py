@@ -60,10 +60,8 @@ def _read_csv(path):
             "`position [mm],height [um]` with units of length"
         )
     values = np.array([_row(path, number, cells) for number, cells in rows]).reshape(-1, 2)
-    position, height = (
-        _in_metres(path, column, unit)
-        for column, unit in zip(values.T, units.values(), strict=True)
-    )
+    columns = zip(values.T, units.values(), strict=True)
+    position, height = (_in_metres(path, *column) for column in columns)
     return Topography(str(path), height, (_even_spacing(path, position),))
 
 

@@ -142,13 +142,8 @@ class OfKurtosis(_Uncertain):
     """least and greatest value"""
 
 
-FilmFormula = Annotated[
-    str,
-    read_by(
-        lambda name: formula(f"{name}").name,
-        {"type": "string", "format": "text", "enum": list(FORMULAS)},
-    ),
-]
+_FORMULA = {"type": "string", "format": "text", "enum": list(FORMULAS)}
+FilmFormula = Annotated[str, read_by(lambda name: formula(f"{name}").name, _FORMULA)]
 """Name of a film formula."""
 
 
@@ -288,19 +283,13 @@ class Uncertainty(StrictModel):
 
     def factors(self) -> list[Factor]:
         """Return the factors of the probability that are given, in the order of the keys above."""
-        return [
-            Factor(name, group, given)
-            for name, field in type(self).model_fields.items()
-            if (group := field.json_schema_extra["group"]) != "electrical"
-            and (given := getattr(self, name)) is not None
-        ]
+        fields = type(self).model_fields
+        each = (Factor(name, fields[name].json_schema_extra["group"], one) for name, one in self)
+        return [factor for factor in each if factor.given and factor.group != "electrical"]
 
 
-CHOICES = [
-    name
-    for name, field in Uncertainty.model_fields.items()
-    if issubclass(get_args(field.annotation)[0], Choice)
-]
+_KINDS = {name: get_args(field.annotation)[0] for name, field in Uncertainty.model_fields.items()}
+CHOICES = [name for name, kind in _KINDS.items() if issubclass(kind, Choice)]
 """Factors that are choices, which cannot be measured."""
 
 
