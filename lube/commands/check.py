@@ -93,10 +93,8 @@ def _taken_over(path, study, changes):
     own = {*(content.get("uncertainty") or ()), *((changes or {}).get("uncertainty") or ())}
     names = [spoken(one.name) for one in study.uncertainty.factors() if one.name not in own]
     if "based_on" in content and names:
-        yield (
-            f"uncertainty: {content['based_on']} gives the ranges and choices of "
-            f"{', '.join(names)}; replace those that are not yours"
-        )
+        given = f"the ranges and choices of {', '.join(names)}"
+        yield f"uncertainty: {content['based_on']} gives {given}; replace those that are not yours"
 
 
 def _expected_run(study, points):

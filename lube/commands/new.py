@@ -91,10 +91,8 @@ def _numbers(option, text):
     """Split ``100, 200 N`` into numbers and unit, as they are written."""
     match = _NUMBERS.fullmatch(text.strip())
     if match is None:
-        raise LubeError(
-            f"--{option}: got {shown(text)}, need numbers with a unit, "
-            "and spaces between them, as in `1.5 2 mm`"
-        )
+        needed = "need numbers with a unit, and spaces between them, as in `1.5 2 mm`"
+        raise LubeError(f"--{option}: got {shown(text)}, {needed}")
     values, units = match[1].replace(",", " ").split(), match[2]
     if option in OF_ROLLERS and len(values) > 2:
         raise LubeError(f"--{option}: got {shown(text)}, need one number, or one for each roller")

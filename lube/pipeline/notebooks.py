@@ -67,10 +67,8 @@ def execute_notebook(
     known = parameters_of(notebook)
     for name in parameters:
         if name not in known:
-            raise LubeError(
-                f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
-                f"{', '.join(known)}"
-            )
+            there = f"its parameters cell, which has {', '.join(known)}"
+            raise LubeError(f"{notebook}: parameter {name!r} is not in {there}")
     output = Path(output)
     failed = output.with_name(f"{output.stem}.failed.ipynb")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:

@@ -242,10 +242,8 @@ def _entry(content, where, folder, earlier):
     if file is not None and not os.path.isfile(file):
         raise DataError(f"{where}: file: got {shown(row.file)}, no such file")
     if earlier and row.origin != earlier[0].origin:
-        raise DataError(
-            f"{where}: origin: got {row.origin!r} after {earlier[0].origin!r}, need the same in "
-            "all rows"
-        )
+        came = f"got {row.origin!r} after {earlier[0].origin!r}"
+        raise DataError(f"{where}: origin: {came}, need the same in all rows")
     return Entry.model_construct(**dict(row) | {"where": where, "file": file})
 
 

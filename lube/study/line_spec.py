@@ -407,10 +407,8 @@ def _check_height_step(rms, step, name, roller):
     if 1e3 <= rms / step <= 1e7:
         return
     if 1e-9 <= rms <= 1e-5:
-        raise StudyError(
-            f"roughness.height_step: got {_length(step)}, need {_length(rms / 1e7)} "
-            f"to {_length(rms / 1e3)} for a roughness of {_length(rms)}"
-        )
+        needed = f"need {_length(rms / 1e7)} to {_length(rms / 1e3)} for a roughness of"
+        raise StudyError(f"roughness.height_step: got {_length(step)}, {needed} {_length(rms)}")
     key = f"{name}.{roller.kinds[0]}" if roller.kinds else "composite_rms_roughness"
     raise StudyError(f"rollers.{key}: got {_length(rms)}, need an rms height of 1 nm to 10 µm")
 

@@ -209,11 +209,9 @@ def _properties(record, substance, temperature):
     viscosity, density = substance.kinematic_viscosity(temperature), substance.density(temperature)
     wrong = ~(np.isfinite(viscosity) & (viscosity > 0.0))
     if wrong.any():
-        raise RangeError(
-            f"the viscosity law gives {viscosity[wrong][0]:g} m2/s at "
-            f"{temperature[wrong][0] - ZERO_CELSIUS:g} degC, need a positive viscosity; "
-            "narrow temperature_range"
-        )
+        first, at = viscosity[wrong][0], temperature[wrong][0] - ZERO_CELSIUS
+        came = f"the viscosity law gives {first:g} m2/s at {at:g} degC"
+        raise RangeError(f"{came}, need a positive viscosity; narrow temperature_range")
     dynamic, stated = viscosity * density, substance.stated_coefficient(temperature)
     return {
         "kinematic_viscosity": viscosity,
