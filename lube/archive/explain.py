@@ -65,11 +65,8 @@ class Explanation:
     @property
     def differing(self) -> list[str]:
         """Names of the variables that are not the same to the last bit."""
-        return [
-            name
-            for name in self.again.data_vars
-            if self.again[name].values.tobytes() != self.contact[name].values.tobytes()
-        ]
+        pairs = ((name, one.values, self.contact[name].values) for name, one in self.again.items())
+        return [name for name, one, other in pairs if one.tobytes() != other.tobytes()]
 
 
 def explain(path: File, realisation: int | None = 0, **levels: float | str) -> Explanation:

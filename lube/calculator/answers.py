@@ -1,5 +1,7 @@
 """Answers of the calculator: labelled datasets in customary units, with tables and plots."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -19,30 +21,9 @@ _CUSTOMARY = {
     "reduced_modulus": ("GPa", 1e-9),
 }
 """By SI unit, or by variable: the customary unit, and how many of it are one SI unit."""
-_TAIL, _WHOLE = "by importance sampling", "of the whole duty cycle"
-_ONE, _ASSUMED = f"{_WHOLE}, of one pair", "5 to 95 % over what is not known exactly"
-_OF_NO_FILE = {
-    "radius": ("radius of the first roller", "m"),
-    "second_radius": ("radius of the second roller", "m"),
-    "surface_speed": ("surface speed of the first roller", "m s-1"),
-    "second_surface_speed": ("surface speed of the second roller", "m s-1"),
-    "share": ("share of the duty cycle", "1"),
-    "viscosity_ratio": ("viscosity ratio of a rolling bearing, kappa", "1"),
-    "roughness_factor": ("factor on the roughness of both rollers", "1"),
-    "position": ("position from the line of centres", "m"),
-    "assumed_breakthrough_probability": (f"breakthrough probability, {_ASSUMED}", "1"),
-    "half_width": ("expected half-width of the 95 % interval, relative to the quantity", "1"),
-    "reading_error": ("relative error of the share that the rig reads", "1"),
-    "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
-    "whole_probability_pair": (f"breakthrough probability {_ONE}", "1"),
-    "whole_assumed_probability": (f"breakthrough probability {_WHOLE}, {_ASSUMED}", "1"),
-    "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
-    "whole_surface_probability": (f"breakthrough probability of the surface {_WHOLE}", "1"),
-    "whole_surface_probability_pair": (f"breakthrough probability of the surface {_ONE}", "1"),
-    "whole_surface_rate": (f"breakthroughs per time on the surface {_WHOLE}", "s-1"),
-    "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
-}
-"""Long name and SI unit of the variables that no file has."""
+_TAIL, _ASSUMED = "by importance sampling", "5 to 95 % over what is not known exactly"
+_OF_NO_FILE = pd.read_csv(Path(__file__).with_name("names.csv"))
+"""Name, long name and SI unit of the variables that no file has."""
 
 
 def variable_of(name: str, formula: str) -> str:
@@ -53,7 +34,7 @@ def variable_of(name: str, formula: str) -> str:
 _KINDS = ("film_profile", "lubricant", "trace", "film", "contact", "indicators")
 _ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
 _WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
-_WORDS |= _OF_NO_FILE
+_WORDS |= {name: words for name, *words in _OF_NO_FILE.itertuples(index=False)}
 # Variables of `tail.nc` get a prefix: some have the same names as variables of `contact.nc`.
 _WORDS |= {
     f"tail_{name}": (f"{row.long_name}, {_TAIL}", row.units) for name, row in FILES["tail"].items()

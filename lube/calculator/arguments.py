@@ -1,6 +1,6 @@
 """Check the arguments of the calculator: numbers with units, choices and counts."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypedDict, get_args
 
@@ -40,8 +40,8 @@ leave out heating at the inlet and starvation; the oil carries the whole load, u
 ``load_sharing`` says otherwise."""
 REALISATIONS = 64
 SEED = 1
-Point = tuple[xr.DataArray, xr.DataArray, xr.DataArray]
-"""Force, speed and temperature."""
+Point = Mapping[str, xr.DataArray]
+"""Force, speed and temperature by name."""
 
 
 def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArray:
@@ -115,11 +115,11 @@ def bare_number(name: str, value: object, **limits: float) -> float:
 
 def conditions(force: Amount, speed: Amount, temperature: Amount, radius: float) -> Point:
     """Force in N, speed in rpm and temperature in degC; the radius as for `rotation_speed`."""
-    return (
-        amount("force", force, "N", above=0.0),
-        rotation_speed(speed, radius),
-        amount("temperature", temperature, "degC", above=-273.15),
-    )
+    return {
+        "force": amount("force", force, "N", above=0.0),
+        "speed": rotation_speed(speed, radius),
+        "temperature": amount("temperature", temperature, "degC", above=-273.15),
+    }
 
 
 def rotation_speed(speed: Amount, radius: float) -> xr.DataArray:

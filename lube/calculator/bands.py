@@ -2,8 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from lube.calculator.arguments import Choices
@@ -18,20 +20,7 @@ from lube.types import Array, Values
 
 SAMPLES = {"line": 128, "surface": 32}
 """Numbers of samples by contact model, powers of 2; surfaces take long to draw."""
-RANGES = {
-    "viscosity": {"range": "+- 10 %", "source": "ISO 3448, limits of a viscosity grade"},
-    "pressure_viscosity_coefficient": {"range": "+- 20 %", "source": "assumed"},
-    "temperature": {"range": "+- 1 K", "source": "assumed"},
-    "force": {"range": "+- 1 %", "source": "assumed"},
-    "speed": {"range": "+- 1 %", "source": "assumed"},
-    "young_modulus": {"range": "+- 3 %", "source": "assumed, bearing and gear steels"},
-    "first_rms_roughness": {"range": "+- 10 %", "source": "assumed"},
-    "second_rms_roughness": {"range": "+- 10 %", "source": "assumed"},
-    "longest_wavelength": {"range": "-50 % to 0 %", "source": "assumed"},
-    "shortest_wavelength": {"range": "-20 % to 100 %", "source": "assumed"},
-    "critical_thickness": {"range": "-80 % to 0 %", "source": "assumed, a layer of 1 to 5 nm"},
-    "shear_strength": {"range": "+- 50 %", "source": "assumed"},
-}
+RANGES = pd.read_csv(Path(__file__).with_name("ranges.csv"), index_col="name").to_dict("index")
 """Ranges of an answer if none are given, in the form of a study's section ``uncertainty``."""
 
 
@@ -59,6 +48,8 @@ class Assumptions:
     ----------
     wanted : bool
         Whether there is a band.
+    rollers, choices, seed
+        As given.
 
     Raises
     ------
@@ -79,6 +70,7 @@ class Assumptions:
         if not isinstance(bands, bool | Mapping):
             raise StudyError(f"bands: got {shown(bands)}, need True, False or a dict of ranges")
         self.wanted = bands is not False
+        self.rollers, self.choices, self.seed = rollers, choices, seed
         ranges = RANGES if bands is True else dict(bands or {})
         uncertain = validate(Uncertainty, ranges, "bands", StudyError)
         if uncertain.resistivity:

@@ -143,7 +143,7 @@ def duty(
     table = _film(given, rollers, oil, formula, film_model(rollers, choices, slip))
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
     if "line" in choices.models:
-        contact = ensemble(table, rollers, realisations, seed, gap=gap)
+        contact = ensemble(table, rollers, realisations, seed, 0.0, gap)
         on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
         width = 2.0 * table["contact_half_width"].max().item()
         whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))
@@ -208,9 +208,8 @@ def _conditions(columns, rollers):
 
 def _film(given, rollers, oil, film_formula, choices):
     """Film table over ``point``, with the radii of each point."""
-    *point, radius, second_radius = given.values()
-    pair = rollers.pair.with_radii(radius, second_radius)
-    table = film_of_oil(oil, pair, point, [film_formula], **choices)
+    pair = rollers.pair.with_radii(given["radius"], given["second_radius"])
+    table = film_of_oil(oil, pair, given, [film_formula], **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     return table.assign(force=given["force"])
 

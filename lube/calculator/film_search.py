@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from lube.calculator.arguments import Choices, bare_number, check_realisations
+from lube.calculator.arguments import bare_number, check_realisations
 from lube.calculator.bands import Assumptions
 from lube.calculator.operating_points import conditions_of
-from lube.calculator.parts import Rollers
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
@@ -60,32 +59,22 @@ class FilmSearch:
 
     Parameters
     ----------
-    rollers : Rollers
-        The two rollers.
+    assumed : Assumptions
+        Rollers, a model with a single contact model, in which the oil carries the whole load, and
+        what is not known exactly; if wanted, adds the limits over it to all that is found.
     share : float
         Share of time with contact, between 0 and 1.
-    realisations, seed : int
+    realisations : int
         As in `lube.contact_probability`.
-    choices : Choices
-        With a single contact model; the oil carries the whole load.
-    assumed : Assumptions
-        What is not known exactly; if wanted, adds the limits over it to all that is found.
     """
 
-    def __init__(
-        self,
-        rollers: Rollers,
-        share: float,
-        realisations: int,
-        seed: int,
-        choices: Choices,
-        assumed: Assumptions,
-    ) -> None:
+    def __init__(self, assumed: Assumptions, share: float, realisations: int) -> None:
+        rollers, choices, seed = assumed.rollers, assumed.choices, assumed.seed
         if len(choices.models) > 1:
             raise StudyError(f"contact_model: got {shown(list(choices.models))}, need one name")
-        self._share, self._gap = bare_number("share", share, above=0.0, below=1.0), choices.gap
-        self.choices = choices
-        self._on_surface = "surface" in self.choices.models
+        self._share = bare_number("share", share, above=0.0, below=1.0)
+        self._choices, self._gap = choices, choices.gap
+        self._on_surface = "surface" in choices.models
         self._realisations = check_realisations(realisations, seed)
         self._rollers, self._seed, self._assumed = rollers, seed, assumed
         if not self._on_surface:
@@ -104,7 +93,7 @@ class FilmSearch:
         tried : str
             These levels in words.
         """
-        plain = replace(self.choices, gap=PLAIN)
+        plain = replace(self._choices, gap=PLAIN)
         whole = table(levels, plain)
         for name, size in whole["film_thickness"].sizes.items():
             if size != levels.size:
@@ -114,7 +103,7 @@ class FilmSearch:
         check_known(known.size)
         known = known[np.argsort(ratios[known])]
 
-        def table_at(sought, choices=self.choices):
+        def table_at(sought, choices=self._choices):
             here = np.interp(sought, ratios[known], known)
             return table(np.interp(here, np.arange(levels.size), levels), choices)
 
@@ -302,7 +291,6 @@ def _reached(films, table, levels, tried):
     if sought[0] > thickness.max():
         film, most = 1e6 * np.exp([sought[0], thickness.max()])
         needed = f"film of {film:.3g} um" if np.isfinite(film) else "thicker film"
-        raise RangeError(
-            f"share: this share needs a {needed}, and no {tried} gives more than {most:.3g} um"
-        )
+        given = f"no {tried} gives more than {most:.3g} um"
+        raise RangeError(f"share: this share needs a {needed}, and {given}")
     return np.interp(sought, thickness[::rising], levels[::rising], left, right)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from lube.calculator.answers import Answer, variable_of
-from lube.calculator.arguments import FORMULA, amount, conditions, single
+from lube.calculator.arguments import FORMULA, amount, single
 from lube.calculator.operating_points import film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.grid.films import FilmGroups
@@ -70,9 +70,8 @@ def indicators(
     found = table[["lambda_ratio"]].assign(_each_by_name(published(table, resistance, pair)))
     if pitch_diameter is not None:
         diameter = single(amount("pitch_diameter", pitch_diameter, "m", above=0.0))
-        _, rotation, warmth = conditions(force, speed, temperature, pair.first.radius)
-        viscosity = oil.at(warmth)["kinematic_viscosity"]
-        found["viscosity_ratio"] = xr.apply_ufunc(viscosity_ratio, viscosity, rotation, diameter)
+        given = oil.at(table["temperature"])["kinematic_viscosity"], table["speed"], diameter
+        found["viscosity_ratio"] = xr.apply_ufunc(viscosity_ratio, *given)
     return with_remarks(found, table, rollers)
 
 

@@ -123,5 +123,5 @@ def profile(
 def _one_point(rollers, oil, force, speed, temperature):
     """Oil at the temperature, pair of rollers, force in N and speed in rpm, of one point."""
     given = conditions(force, speed, temperature, rollers.pair.first.radius)
-    force, speed, temperature = ([single(one)] for one in given)
+    force, speed, temperature = ([single(one)] for one in given.values())
     return lubricant_table([oil.record], temperature), rollers.pair, force, speed

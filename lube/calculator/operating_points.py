@@ -25,7 +25,7 @@ from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
-from lube.grid.gap import PLAIN, Gap
+from lube.grid.gap import Gap
 from lube.grid.plausibility import remarks
 from lube.inference.surface_scatter import revolution_size, surface_prediction
 from lube.schema import LIMITS
@@ -114,7 +114,7 @@ def film_in_si(
     model = film_model(rollers, choices or Choices(), slip)
     table = film_of_oil(oil, rollers.pair, point, formulas, **model)
     dims = ("film_formula", "temperature", "speed", "force")
-    table = table.assign_coords(force=point[0], speed=point[1])
+    table = table.assign_coords(force=point["force"], speed=point["speed"])
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
 
@@ -145,9 +145,8 @@ def film_of_oil(
     oil: Oil, pair: RollerPair, point: Point, formulas: Sequence[str], **choices: Any
 ) -> xr.Dataset:
     """Film table with the oil's viscosity; the point's numbers are in N, rpm and degC."""
-    force, speed, temperature = point
-    properties = oil.at(temperature)
-    table = film_at(properties, pair, force, speed, formulas, **choices)
+    properties = oil.at(point["temperature"])
+    table = film_at(properties, pair, point["force"], point["speed"], formulas, **choices)
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 
@@ -286,8 +285,7 @@ def contact_probability(
     gap = choices.gap
     check_realisations(realisations, seed)
     assumed = Assumptions(bands, rollers, oil, choices, _names(film_formula)[0], seed)
-    point = conditions(force, speed, temperature, rollers.pair.first.radius)
-    assumed.check(dict(zip(("force", "speed", "temperature"), point, strict=True)))
+    assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     found = table[FILM_VARIABLES]
     if "line" in choices.models:
@@ -333,12 +331,7 @@ def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.D
 
 
 def ensemble(
-    table: xr.Dataset,
-    rollers: Rollers,
-    realisations: int,
-    seed: int,
-    slip: float = 0.0,
-    gap: Gap = PLAIN,
+    table: xr.Dataset, rollers: Rollers, realisations: int, seed: int, slip: float, gap: Gap
 ) -> xr.Dataset:
     """Probabilities at some films and contact widths, and their intervals.
 
@@ -351,10 +344,10 @@ def ensemble(
         The two rollers, for their lines and boundary layer.
     realisations, seed : int
         As in `contact_probability`.
-    slip : float, optional
+    slip : float
         Slide-to-roll ratio.
-    gap : Gap, optional
-        How film and roughness make up the gap; by default flat films, and lines as drawn.
+    gap : Gap
+        How film and roughness make up the gap.
 
     Returns
     -------

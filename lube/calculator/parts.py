@@ -240,10 +240,8 @@ class Rollers:
         waves |= {"points": points, "height_step": _HEIGHT_STEP}
         shared = roughness or validate(Roughness, waves, "Rollers", StudyError)
         if shared.longest_wavelength == AUTOMATIC_WAVELENGTH:
-            raise StudyError(
-                "Rollers: roughness.longest_wavelength: got "
-                f"{AUTOMATIC_WAVELENGTH!r}, need a length"
-            )
+            came = f"got {AUTOMATIC_WAVELENGTH!r}, need a length"
+            raise StudyError(f"Rollers: roughness.longest_wavelength: {came}")
         self.lines = line_spec(self.pair, shared, largest_force=math.nan)
         self.roughness, self.given_pair = shared, self.pair
         self.band = band_in_words(self.pair, shared, self.lines)
@@ -258,10 +256,8 @@ class Rollers:
         pair = self.pair
         radii = " and ".join(f"{1e3 * one.radius:.4g}" for one in (pair.first, pair.second))
         rms = " and ".join(f"{1e6 * height:.4g}" for height in pair.rms_heights)
-        return (
-            f"<Rollers: radii {radii} mm, rms roughness {rms} um, {1e3 * pair.length:.4g} mm long, "
-            f"{self.band}>"
-        )
+        length = f"{1e3 * pair.length:.4g} mm long"
+        return f"<Rollers: radii {radii} mm, rms roughness {rms} um, {length}, {self.band}>"
 
 
 def _one_of_two(given, model, name, short):

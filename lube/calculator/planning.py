@@ -14,7 +14,6 @@ from lube.calculator.arguments import (
     amount,
     bare_number,
     check_realisations,
-    conditions,
     one_name,
 )
 from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
@@ -132,10 +131,8 @@ def plan(
         lines = spec, table, layer, choices.gap, seed
         found, ratio = slopes(*lines), line_ratios(*lines, slip, records)
     error = relative_error(found.probability, size, ratio[:, None], reading)
-    radius = rollers.pair.first.radius
-    force, speed, temperature = conditions(force, speed, temperature, radius)
-    oils, dims = oil.at(temperature), table["film_thickness"].dims
-    slope = film_by_coefficient(oils, rollers.pair, force, speed, formula)
+    oils, dims = oil.at(table["temperature"]), table["film_thickness"].dims
+    slope = film_by_coefficient(oils, rollers.pair, table["force"], table["speed"], formula)
     by_coefficient = slope.transpose(*dims).values.ravel()
     widths = half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
     shape, read = table["film_thickness"].shape, (*thresholds.dims, *dims)

@@ -96,7 +96,7 @@ def required_film(
     choices = Choices.of("flat", "none", "none", contact_model)
     left_out = "oil", "film", "speed", "temperature"
     assumed = Assumptions(bands, rollers, Oil(_ANY_OIL), choices, FORMULA, seed, left_out)
-    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
+    search = FilmSearch(assumed, share, realisations)
     force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
 
@@ -162,7 +162,7 @@ def required_viscosity(
 
     choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
-    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
+    search = FilmSearch(assumed, share, realisations)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
     properties = oil.at(amount("temperature", temperature, "degC"))
@@ -216,7 +216,7 @@ def required_speed(
 
     choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
-    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
+    search = FilmSearch(assumed, share, realisations)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -268,7 +268,7 @@ def required_temperature(
 
     choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
-    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
+    search = FilmSearch(assumed, share, realisations)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -320,8 +320,8 @@ def required_roughness(
     one = one_name("film_formula", film_formula)
     choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
-    search = FilmSearch(rollers, share, realisations, seed, choices, assumed)
-    film = film_in_si(rollers, oil, force, speed, temperature, one, search.choices)
+    search = FilmSearch(assumed, share, realisations)
+    film = film_in_si(rollers, oil, force, speed, temperature, one, choices)
     own = single(film["lambda_ratio"])
     check_known(np.isfinite(own))
 

@@ -93,10 +93,8 @@ def _taken_over(path, study, changes):
     own = {*(content.get("uncertainty") or ()), *((changes or {}).get("uncertainty") or ())}
     names = [spoken(one.name) for one in study.uncertainty.factors() if one.name not in own]
     if "based_on" in content and names:
-        yield (
-            f"uncertainty: {content['based_on']} gives the ranges and choices of "
-            f"{', '.join(names)}; replace those that are not yours"
-        )
+        given = f"the ranges and choices of {', '.join(names)}"
+        yield f"uncertainty: {content['based_on']} gives {given}; replace those that are not yours"
 
 
 def _expected_run(study, points):
@@ -116,10 +114,8 @@ def _expected_run(study, points):
         seconds += points * (9.0 if study.gap.is_answered else 2.0)
     cores = os.cpu_count()
     minutes = max(1, round(seconds / 60.0 / cores))
-    return (
-        f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate; up to "
-        f"{0.4 + size:.1f} GB for each job"
-    )
+    time = f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate"
+    return f"{time}; up to {0.4 + size:.1f} GB for each job"
 
 
 def _many(number, name):

@@ -32,13 +32,6 @@ _RADIUS = "50 mm"  # of the paper's rollers
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+)?"
 _NUMBERS = re.compile(rf"((?:{_NUMBER},?\s+)*{_NUMBER})\s*(1/\w+|[^\d\s/,.].*)")
 
-_RECORDS = """\
-# Measured records, one per line; paths start from this folder. Further columns, such as channel,
-# gain and pair, are explained in docs/records.md.
-file, force [N], speed [rpm], temperature [degC]
-# run-07.csv, 800, 100, 40
-"""
-
 
 def new_study(
     path: File,
@@ -98,10 +91,8 @@ def _numbers(option, text):
     """Split ``100, 200 N`` into numbers and unit, as they are written."""
     match = _NUMBERS.fullmatch(text.strip())
     if match is None:
-        raise LubeError(
-            f"--{option}: got {shown(text)}, need numbers with a unit, "
-            "and spaces between them, as in `1.5 2 mm`"
-        )
+        needed = "need numbers with a unit, and spaces between them, as in `1.5 2 mm`"
+        raise LubeError(f"--{option}: got {shown(text)}, {needed}")
     values, units = match[1].replace(",", " ").split(), match[2]
     if option in OF_ROLLERS and len(values) > 2:
         raise LubeError(f"--{option}: got {shown(text)}, need one number, or one for each roller")
@@ -131,7 +122,7 @@ def _written(path, text, records):
     """Write the files and check the study; if it is refused, no new file is left."""
     texts = {path: text}
     if records is not None and not records.exists():
-        texts.setdefault(records, _RECORDS)
+        texts.setdefault(records, render("records.csv"))
     with ExitStack() as written:
         for file, content in texts.items():
             write_text(file, content)

@@ -54,9 +54,8 @@ def repository(here: Path | None = None) -> Path:
     for folder in (here, *here.parents, ROOT):
         if (folder / _SIGN).is_file():
             return folder
-    raise LubeError(
-        f"{here}: no Snakefile of lube, need a clone of its repository or a folder in it"
-    )
+    needed = "need a clone of its repository or a folder in it"
+    raise LubeError(f"{here}: no Snakefile of lube, {needed}")
 
 
 def run(arguments: Sequence[str]) -> NoReturn:

@@ -18,7 +18,6 @@ from bokeh.models import (
 )
 from bokeh.palettes import Cividis256
 from bokeh.plotting import figure
-from bokeh.themes import Theme
 
 from lube.explorer.content import CHOICES, MODEL
 from lube.physics.regimes import regime
@@ -35,29 +34,6 @@ _MOST_DECADES = 8
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _RAREST = 1e-20
 """Lowest probability on the axes: at very thick films probabilities fall below any number."""
-_FONT = "system-ui, sans-serif"
-THEME = Theme(
-    json={
-        "attrs": {
-            "Axis": {
-                "axis_label_text_font": _FONT,
-                "axis_label_text_font_size": "14px",
-                "axis_label_text_font_style": "normal",
-                "major_label_text_font": _FONT,
-                "major_label_text_font_size": "13px",
-                "minor_tick_line_color": None,
-            },
-            "Grid": {"grid_line_color": "#E4E4E4"},
-            "Plot": {
-                "height": 320,
-                "sizing_mode": "stretch_width",
-                "outline_line_color": "#94A3B8",
-            },
-            "BaseColorBar": {"major_label_text_font_size": "13px"},
-        }
-    }
-)
-"""Look of all figures, legible on a phone."""
 _POINT = (
     *"x film mean lower upper limit lambda width M L name outside falling deformed rubbing".split(),
     *CHOICES,
@@ -158,10 +134,8 @@ def _round_numbers(low, high):
     digits = next(digits for most, digits in _DIGITS.items() if decades <= most)
     step = math.ceil(decades / _MOST_DECADES)
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
-    numbers = [
-        float(f"{digit}e{power}") for power in powers if power % step == 0 for digit in digits
-    ]
-    return [number for number in numbers if low <= number <= high]
+    found = [float(f"{digit}e{power}") for power in powers if power % step == 0 for digit in digits]
+    return [number for number in found if low <= number <= high]
 
 
 def _percent(share):
@@ -189,9 +163,8 @@ def _points(plot, source, x, y, size=8, **look):
 def _all_points(plot, sources, x, y, around="grid"):
     """Draw the chosen operating point, and others, which show their names and can be chosen."""
     small = _points(plot, sources[around], x, y, size=6 if around == "grid" else 8)
-    _points(
-        plot, sources["chosen"], x, y, size=15, fill_color=COLOURS["vermilion"], line_color="black"
-    )
+    look = {"fill_color": COLOURS["vermilion"], "line_color": "black"}
+    _points(plot, sources["chosen"], x, y, size=15, **look)
     plot.add_tools(
         HoverTool(renderers=[small], tooltips="<b>@name</b>", point_policy="snap_to_data"),
         TapTool(renderers=[small]),
@@ -221,9 +194,8 @@ def _probabilities(plot, sources, x, around):
 
 
 def _whiskers(plot, source, x, colour, width):
-    whisker = Whisker(
-        base=x, lower="lower", upper="upper", source=source, line_color=colour, line_width=width
-    )
+    look = {"line_color": colour, "line_width": width}
+    whisker = Whisker(base=x, lower="lower", upper="upper", source=source, **look)
     whisker.upper_head.size = whisker.lower_head.size = 8
     whisker.upper_head.line_color = whisker.lower_head.line_color = colour
     plot.add_layout(whisker)
@@ -278,9 +250,8 @@ def _master_curve(sources, ratios, shares):
     )  # fmt: skip
     _percent_axis(plot)
     source = sources["master"]
-    plot.varea(
-        "lambda", "lower", "upper", source=source, fill_color=COLOURS["orange"], fill_alpha=0.35
-    )
+    light = {"fill_color": COLOURS["orange"], "fill_alpha": 0.35}
+    plot.varea("lambda", "lower", "upper", source=source, **light)
     grey = {"line_color": COLOURS["grey"], "line_width": 2}
     plot.line("lambda", "narrow", source=source, line_dash="dotted", **grey)
     plot.line("lambda", "wide", source=source, line_dash="dashed", **grey)

@@ -18,9 +18,10 @@ from bokeh.models import (
     Select,
 )
 from bokeh.resources import Resources
+from bokeh.themes import Theme
 
 from lube.explorer.content import CHOICES, MODEL, page_content
-from lube.explorer.figures import COLUMNS, THEME, TINTS, draw
+from lube.explorer.figures import COLUMNS, TINTS, draw
 from lube.pipeline.stamps import stamp
 from lube.report.pages import render
 
@@ -73,7 +74,7 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
         sources[name].selected.js_on_change("indices", react)
     places = {f"control-{name}": control for name, control in controls.items()}
     places |= {f"figure-{name}": plot for name, plot in figures.items()}
-    document = Document(theme=THEME)
+    document = Document(theme=Theme(filename=_TEMPLATES / "theme.yaml"))
     document.js_on_event("document_ready", react)
     with document.models.freeze():  # otherwise Bokeh counts all models again for every root
         for place, model in places.items():

@@ -66,10 +66,8 @@ def _check_number(files):
 def _check_entry(entry):
     key, equals, value = entry.partition("=")
     if not equals:
-        raise StudyError(
-            f"--config: got {entry}, need key=value; put targets before it, as in "
-            f"`snakemake {entry} --config key=value`"
-        )
+        advice = f"put targets before it, as in `snakemake {entry} --config key=value`"
+        raise StudyError(f"--config: got {entry}, need key=value; {advice}")
     if "." in key:
         outer, *inner = key.split(".")
         for name in reversed(inner):
@@ -177,13 +175,11 @@ def study_of_module(config: dict) -> tuple[Study, dict[str, Any]]:
     LubeError
         If no file is named, or as from `study_of_command`.
     """
-    changes = {key: value for key, value in config.items() if key != "study"}
-    if not isinstance(config.get("study"), str):
-        raise StudyError(
-            f"config of the module: study: got {shown(config.get('study'))}, need the path of a "
-            "study's file"
-        )
-    return _checked(config["study"], changes)
+    changes, study = dict(config), config.get("study")
+    if not isinstance(study, str):
+        came = f"config of the module: study: got {shown(study)}"
+        raise StudyError(f"{came}, need the path of a study's file")
+    return _checked(changes.pop("study"), changes)
 
 
 def _checked(path, changes):

@@ -29,8 +29,6 @@ def job_groups() -> dict[str, str]:
     # Rules that are not stages, such as `explorer`, follow the stages.
     scripts = {path.stem for path in ROOT.glob("workflow/scripts/*.py")} - {"stage"}
     groups = dict.fromkeys(scripts, "figures")
-    groups |= {
-        stage.rule: "figures" if name in after else "beside" for name, stage in STAGES.items()
-    }
+    groups |= {row.rule: "figures" if name in after else "beside" for name, row in STAGES.items()}
     groups |= dict.fromkeys(before.difference(_BATCHED) | {"resolved_study"}, "tables")
     return groups | {"batch": "batches", "samples": "beside"}

@@ -77,10 +77,8 @@ def execute_notebook(
     known = parameters_of(notebook)
     for name in parameters:
         if name not in known:
-            raise LubeError(
-                f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
-                f"{', '.join(known)}"
-            )
+            there = f"its parameters cell, which has {', '.join(known)}"
+            raise LubeError(f"{notebook}: parameter {name!r} is not in {there}")
     output = Path(output)
     failed = output.with_name(f"{output.stem}.failed.ipynb")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
@@ -104,9 +102,8 @@ def _execute_apart(*arguments):
     The notebook cannot change this process or the next notebook, and if its memory runs out, this
     process is still there to report it. What is imported here need not be imported again.
     """
-    process = multiprocessing.get_context("fork").Process(
-        target=_execute, args=arguments, daemon=True
-    )
+    fork = multiprocessing.get_context("fork")
+    process = fork.Process(target=_execute, args=arguments, daemon=True)
     process.start()
     process.join()
     return process.exitcode

@@ -181,9 +181,8 @@ class StudyFiles:
 
     def products(self, figures: Iterable[str]) -> list[str]:
         """List the files that the jobs of some figures make: pictures, origin, notebook."""
-        return [
-            self.result(name) for figure in figures for name in (*products(figure), origin(figure))
-        ]
+        names = (name for figure in figures for name in (*products(figure), origin(figure)))
+        return [self.result(name) for name in names]
 
     def made_by(self, target: str, figures: dict[str, Figure]) -> list[str]:
         """List the files that a target made on request asks for: results, and figures with theirs.
@@ -250,12 +249,8 @@ class StudyFiles:
     def _stages_of(self, target, figures):
         """List the stages whose files a target names, or draws."""
         path = os.path.normpath(target)
-        drawn = {
-            kind
-            for name, figure in figures.items()
-            if path in self.products([name])
-            for kind in figure.datasets
-        }
+        asked = (one for name, one in figures.items() if path in self.products([name]))
+        drawn = {kind for figure in asked for kind in figure.datasets}
         return [
             name
             for name, row in STAGES.items()

@@ -127,10 +127,8 @@ class TextSignal:
         number, line = self._row(rows_before + int(wrong[1]) - 1)
         quantities = " and ".join(signal.quantity for signal in self.signals)
         commas = " with decimal commas" if self.decimal_point == "," else ""
-        return (
-            f"line {number}: got {shown(line)}, need {self.width} values, "
-            f"numbers{commas} for {quantities}"
-        )
+        needed = f"need {self.width} values, numbers{commas} for {quantities}"
+        return f"line {number}: got {shown(line)}, {needed}"
 
     def _row(self, row):
         """Line number and text of a row; empty lines are not rows."""

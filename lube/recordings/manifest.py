@@ -21,13 +21,12 @@ from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
 Share = Annotated[float, quantity(None, least=0.0, most=1.0)]
+_Unit = Annotated[str, checked_text(electrical_quantity, "unit of voltage or resistance")]
+_Offset = Annotated[str, checked_text(parse_electrical, "quantity in V or ohm, as the record is")]
 
-_UNITS = (
-    dict.fromkeys(("force", "force_tolerance"), "N")
-    | dict.fromkeys(("speed", "speed_tolerance"), "rpm")
-    | {"temperature": "degC", "temperature_tolerance": "K"}
-    | {"sampling_interval": "s", "offset": "mV"}
-)
+_UNITS = {"force": "N", "speed": "rpm", "temperature": "degC", "offset": "mV"}
+_UNITS |= {"force_tolerance": "N", "speed_tolerance": "rpm", "temperature_tolerance": "K"}
+_UNITS |= {"sampling_interval": "s"}
 """Columns whose header needs a unit, with an example; an offset may also be in ohm."""
 
 ORIGINS = ("measured", "simulated")
@@ -47,9 +46,7 @@ class Row(StrictModel):
     """name, without its unit, of the column, variable or channel to read; in TDMS also
     `group/channel`; by default the first voltage or resistance
     """
-    unit: (
-        Annotated[str, checked_text(electrical_quantity, "unit of voltage or resistance")] | None
-    ) = None
+    unit: _Unit | None = None
     """unit of that channel; overrides the one in the file, and decides between voltage and
     resistance where the channel's name does not
     """
@@ -57,9 +54,7 @@ class Row(StrictModel):
     """factor of an amplifier between rig and recorder, below 0 if it inverts: recorded = gain ×
     true + offset
     """
-    offset: Annotated[
-        str, checked_text(parse_electrical, "quantity in V or ohm, as the record is")
-    ] = 0.0
+    offset: _Offset = 0.0
     """recorded value when the true value is 0, a voltage or a resistance as the channel is:
     true = (recorded - offset) / gain
     """
@@ -203,13 +198,11 @@ def _csv_rows(path):
 
 def _columns(cells, where):
     """Units of the columns by name, None where there is none, in the order of the columns."""
-    columns = {}
+    columns, known = {}, Row.model_fields
     for cell in cells:
         name, units = header_cell(cell)
-        if name not in Row.model_fields:
-            raise DataError(
-                f"{where}: unknown column {shown(cell)}, {right_one(name, Row.model_fields)}"
-            )
+        if name not in known:
+            raise DataError(f"{where}: unknown column {shown(cell)}, {right_one(name, known)}")
         if name in columns:
             raise DataError(f"{where}: column {name!r} is repeated")
         _check_units(name, units, where)
@@ -249,10 +242,8 @@ def _entry(content, where, folder, earlier):
     if file is not None and not os.path.isfile(file):
         raise DataError(f"{where}: file: got {shown(row.file)}, no such file")
     if earlier and row.origin != earlier[0].origin:
-        raise DataError(
-            f"{where}: origin: got {row.origin!r} after {earlier[0].origin!r}, need the same in "
-            "all rows"
-        )
+        came = f"got {row.origin!r} after {earlier[0].origin!r}"
+        raise DataError(f"{where}: origin: {came}, need the same in all rows")
     return Entry.model_construct(**dict(row) | {"where": where, "file": file})
 
 

@@ -86,10 +86,8 @@ def _time_fault(times, before, interval):
     if uniform[index]:
         return None
     before, now = times[index - 1] if index else before, times[index]
-    return index, (
-        f"time goes from {before:.9g} s to {now:.9g} s, need uniform steps of about "
-        f"{interval:.6g} s (gaps are not filled)"
-    )
+    needed = f"need uniform steps of about {interval:.6g} s (gaps are not filled)"
+    return index, f"time goes from {before:.9g} s to {now:.9g} s, {needed}"
 
 
 def open_recording(
@@ -210,8 +208,6 @@ def _agreed_interval(path, stated, given):
     if stated is None and given is None:
         raise DataError(f"{path}: no time, need a time column or a sampling interval")
     if stated is not None and given is not None and abs(stated - given) > _AGREEMENT * stated:
-        raise DataError(
-            f"{path}: its time steps by {stated:.6g} s, but the sampling interval was given as "
-            f"{given:.6g} s, need them to agree"
-        )
+        came = f"the sampling interval was given as {given:.6g} s, need them to agree"
+        raise DataError(f"{path}: its time steps by {stated:.6g} s, but {came}")
     return given if stated is None else stated

@@ -7,12 +7,12 @@ quantity follows from its name or its unit. The unit must be stated; it is never
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lube.errors import DataError, located, shown
+from lube.types import File
 from lube.units import ELECTRICAL, convert, converts, electrical_quantity, usual_spelling
 
 UNITS = {"time": "s"} | ELECTRICAL
@@ -115,10 +115,7 @@ def header_cell(cell: str) -> tuple[str, str | None]:
 
 
 def find_signals(
-    channels: Sequence[Channel],
-    where: str | Path,
-    selected: str | None = None,
-    unit: str | None = None,
+    channels: Sequence[Channel], where: File, selected: str | None = None, unit: str | None = None
 ) -> list[Signal]:
     """Find the time and the measured quantity among the channels of a file.
 
@@ -188,9 +185,7 @@ def _first_of(quantities, channels, indices):
 
 def _selected(channels, name, where):
     """Index of the only channel of a name or full name."""
-    found = [
-        index for index, channel in enumerate(channels) if name in (channel.name, channel.full_name)
-    ]
+    found = [i for i, one in enumerate(channels) if name in (one.name, one.full_name)]
     if len(found) == 1:
         return found[0]
     reason = f"no channel {shown(name)}, need one of"
@@ -222,13 +217,12 @@ def _quantity_of_unit(channel):
 
 def _signal(index, channel, quantity, where):
     """Signal of a channel; if its quantity is None, the unit decides between the measured ones."""
+    here = f"{where}: {shown(channel.name)}"
     if not channel.units:
         example = f"'{channel.name} [{UNITS[quantity or 'voltage']}]'"
         other = "" if quantity == "time" else ", or 'unit' given beside the file"
-        raise DataError(
-            f"{where}: {shown(channel.name)} has no unit, need one such as {example}{other}"
-        )
-    with located(f"{where}: {shown(channel.name)}", DataError):
+        raise DataError(f"{here} has no unit, need one such as {example}{other}")
+    with located(here, DataError):
         quantity = quantity or electrical_quantity(channel.units)
         factor = convert(1.0, usual_spelling(channel.units), UNITS[quantity])
     return Signal(index, quantity, factor)

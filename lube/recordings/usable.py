@@ -38,10 +38,8 @@ def lubricant_of(entry: Entry, study: Study) -> str:
     lubricants = {record.name: record for record in study.lubricants}
     name = entry.lubricant or study.lubricants[0].name
     if name not in lubricants:
-        raise DataError(
-            f"{entry.where}: lubricant: got {name}, need one of the study's: "
-            f"{', '.join(lubricants)}"
-        )
+        needed = f"need one of the study's: {', '.join(lubricants)}"
+        raise DataError(f"{entry.where}: lubricant: got {name}, {needed}")
     with located(entry.where, DataError):
         lubricants[name].check_temperatures([entry.temperature])
         study.check_window(entry.force)

@@ -35,9 +35,8 @@ def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def files_table() -> str:
     """Write the table of the files of a study, each with its content, as Markdown."""
-    return markdown_table(
-        ("file", "content"), [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in DATASETS]
-    )
+    rows = [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in DATASETS]
+    return markdown_table(("file", "content"), rows)
 
 
 def keys(model: type[BaseModel]) -> list[tuple[str, str, str]]:

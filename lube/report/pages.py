@@ -101,19 +101,10 @@ def _environment(package):
     from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
     from markupsafe import Markup
 
-    environment = Environment(
-        loader=PackageLoader(package),
-        autoescape=select_autoescape(["html"]),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {
-        "count": count,
-        "escaped": escaped,
-        "inline": lambda text: Markup(inline(text)),
-        "percent": percent,
-        "rounded": rounded,
-        "unit": with_unit,
-    }
+    options = {"undefined": StrictUndefined, "trim_blocks": True, "lstrip_blocks": True}
+    escape = select_autoescape(["html"])
+    environment = Environment(loader=PackageLoader(package), autoescape=escape, **options)
+    filters = {each.__name__: each for each in (count, escaped, percent, rounded)}
+    filters |= {"inline": lambda text: Markup(inline(text)), "unit": with_unit}
+    environment.filters |= filters
     return environment

@@ -75,11 +75,9 @@ def _plus(width):
 
 def _durations(points):
     """Tabulate the best interval of each quantity by the duration of the record."""
-    least = points["half_width"].min("point")
-    rows = [
-        (name, *(_plus(least.sel(quantity=name, turns=turns).item()) for turns in least["turns"]))
-        for name in least["quantity"].values
-    ]
+    least = points["half_width"].min("point").transpose("quantity", "turns")
+    each = zip(least["quantity"].values, least.values, strict=True)
+    rows = [(name, *map(_plus, widths)) for name, widths in each]
     durations = (count(turns, "revolution") for turns in least["turns"].values)
     threshold = points["best_threshold"].item()
     error = percent(points["reading_error"].median().item())

@@ -31,13 +31,8 @@ def run_times(jobs: Mapping[str, Iterable[str]]) -> str:
         step: [_measured(Path(file)) for file in files if Path(file).exists()]
         for step, files in jobs.items()
     }
-    return render(
-        "run_times.html",
-        steps=steps,
-        cores=os.cpu_count(),
-        python=platform.python_version(),
-        platform=platform.platform(),
-    )
+    machine = {"python": platform.python_version(), "platform": platform.platform()}
+    return render("run_times.html", steps=steps, cores=os.cpu_count(), **machine)
 
 
 def _measured(file):

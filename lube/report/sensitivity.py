@@ -7,7 +7,7 @@ from lube.grid.operating_points import by_contact_model
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION
 from lube.report.key_tables import markdown_table
 from lube.report.markdown import escaped
-from lube.report.pages import count, percent, rounded
+from lube.report.pages import count, percent, render, rounded
 from lube.schema import POINT_DIMS
 from lube.sensitivity.findings import LEFT, above_noise, narrowing
 from lube.sensitivity.samples import SEED
@@ -25,11 +25,6 @@ _BANDS = {
 }
 _PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
-_MEASURED = (
-    f"Of the quantities, this is the one of which a measurement that leaves {percent(LEFT)} of its "
-    "variance would lessen the standard deviation of the logarithm of the probability most, all "
-    "choices of the model being open:"
-)
 _HEAD = "uncertain", "the study takes", "range or choices", "source: what is known, and why"
 _LEVELS = {"force": "N", "speed": "rpm", "temperature": "degC"}
 _OF_OIL = {"viscosity": "m^2/s", "pressure_viscosity_coefficient": "1/Pa"}
@@ -41,14 +36,6 @@ _UNITS = _LEVELS | _OF_OIL | dict.fromkeys(_LENGTHS, "m")
 _UNITS |= {"young_modulus": "Pa", "shear_strength": "Pa", "resistivity": "ohm*m"}
 _UNITS |= {"hurst_exponent": "", "skewness": "", "kurtosis": ""}
 """Units of the quantities that may be uncertain."""
-_WORDS = """
-## What this does to the probability
-
-By what the probability of breakthrough is multiplied, or divided, as each quantity goes through its
-range, or a choice is made otherwise: means over random values of all others, at three operating
-points (`sensitivity.nc`). Ranges in per cent or kelvin are deviations from what the study takes. A
-dash stands for an effect no greater than that of the random numbers.
-"""
 
 
 def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None) -> str:
@@ -97,8 +84,8 @@ def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None)
     band = (f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True))
     rows.append(("probability, 5 to 95 % of the samples", "", "", "", *band))
     table = markdown_table((*_HEAD, *conditions), rows)
-    measured = _to_measure(shown, factors, conditions)
-    return "\n\n".join([f"{_WORDS}\n{table}", measured, *_explained(records)]) + "\n"
+    gains, explained = [*_gains(shown, factors, conditions)], _explained(records)
+    return render("sensitivity.md", table=table, left=LEFT, gains=gains, explained=explained)
 
 
 def values_taken(study: Study) -> dict[str, str]:
@@ -147,15 +134,13 @@ def _explained(records):
         yield f"{is_exact.sum().item()} of them have no interval: they are taken as exact."
 
 
-def _to_measure(shown, factors, conditions):
-    """Say which quantity, if it were measured well, would narrow the band most."""
+def _gains(shown, factors, conditions):
+    """Say which quantity, if it were measured well, would narrow the band most at each point."""
     measurable = [name for name in factors if name not in CHOICES]
     if not measurable:
-        return ""
+        return
     gains = narrowing(shown, measurable).transpose("point", "factor").values
-    said = [
-        f"the {spoken(measurable[gain.argmax()])} at {where}, by {percent(gain.max())}"
-        for gain, where in zip(gains, conditions, strict=True)
-        if gain.max() > 0.0
-    ]
-    return f"{_MEASURED} {'; '.join(said)}." if said else ""
+    for gain, where in zip(gains, conditions, strict=True):
+        if gain.max() > 0.0:
+            best = spoken(measurable[gain.argmax()])
+            yield f"the {best} at {where}, by {percent(gain.max())}"

@@ -18,7 +18,7 @@ from lube.grid.model_limits import (
 )
 from lube.grid.operating_points import by_contact_model
 from lube.report.pages import render
-from lube.schema import LIMITS, MEAN_LIMITS
+from lube.schema import LIMITS, MEAN_LIMITS, values_with_limits
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
 from lube.study.study import Study
@@ -62,13 +62,8 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
         (record.title, ends.isel(lubricant=number).to_dataframe().reset_index().to_dict("records"))
         for number, record in enumerate(study.lubricants[: ends.sizes["lubricant"]])
     ]
-    return render(
-        "facts.md",
-        study=study,
-        oils=oils,
-        points=math.prod(len(levels) for levels in study.operating_grid.model_dump().values()),
-        two_pi=2.0 * math.pi,
-    )
+    points = math.prod(map(len, study.operating_grid.model_dump().values()))
+    return render("facts.md", study=study, oils=oils, points=points, two_pi=2.0 * math.pi)
 
 
 def made(study: Study) -> str:
@@ -85,12 +80,9 @@ def made(study: Study) -> str:
         Markdown: a sentence.
     """
     libraries = [f"{name} {version(name)}" for name in ("lube", *LIBRARIES, "snakemake")]
-    return render(
-        "made.md",
-        creators=[one.name for one in study.about.creators],
-        commit=commit(),
-        software=[*libraries, f"Python {platform.python_version()}"],
-    )
+    software = [*libraries, f"Python {platform.python_version()}"]
+    creators = [one.name for one in study.about.creators]
+    return render("made.md", creators=creators, commit=commit(), software=software)
 
 
 def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
@@ -144,10 +136,8 @@ def _film(film, first, shortest):
     half = film["contact_half_width"]
     width = [2.0 * half.min().item(), 2.0 * half.max().item()]
     regimes = film["regime"].attrs["flag_meanings"].split()
-    outside = {
-        name: int((~film["in_validity_range"].sel(film_formula=name).astype(bool)).sum())
-        for name in film["film_formula"].values
-    }
+    invalid = ~film["in_validity_range"].astype(bool)
+    outside = invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict()
     starved = film.sel(first).get("starvation_factor")
     heating = 1.0 - film["inlet_shear_heating_factor"].min().item()
     return {
@@ -240,10 +230,8 @@ def _of_lines(study, results):
 def _of_surfaces(study, results):
     """Probabilities of surfaces, named as the means over realisations of lines are."""
     tail = results["tail"].sel(contact_model="surface")
-    found = {
-        f"breakthrough_probability{end}": tail[f"breakthrough_probability{own}"]
-        for end, own in zip(MEAN_LIMITS, LIMITS, strict=True)
-    }
+    limits = (tail[f"breakthrough_probability{end}"] for end in LIMITS)
+    found = values_with_limits("breakthrough_probability", limits, names=MEAN_LIMITS)
     rolling = tail["slide_to_roll_ratio"] == 0.0
     return xr.Dataset(found | {"pair_deviation": tail["surface_pair_deviation"].where(rolling)})
 
@@ -324,10 +312,8 @@ def _measured_near(comparison, point):
     """Finite contact shares of the records near an operating point."""
     names = {name: f"{name}_level" for name in ("force", "speed", "temperature")}
     names |= {name: name for name in ("lubricant", "slide_to_roll_ratio")}
-    near = np.logical_and.reduce(
-        [comparison[name].values == point[level] for level, name in names.items()]
-    )
-    shares = comparison["measured_share"].values[near]
+    near = [comparison[name].values == point[level] for level, name in names.items()]
+    shares = comparison["measured_share"].values[np.all(near, axis=0)]
     return shares[np.isfinite(shares)]
 
 

@@ -210,13 +210,8 @@ class Deviating:
         pair, scale = self.study.rollers, 1.0 + values.get("young_modulus", 0.0)
         if "radius" in points:
             pair = pair.with_radii(points["radius"], points["second_radius"])
-        return DeviatingRollers(
-            pair.first,
-            pair.length,
-            pair.reduced_radius,
-            pair.reduced_modulus * scale,
-            self.rms_roughness(values),
-        )
+        reduced = pair.reduced_radius, pair.reduced_modulus * scale
+        return DeviatingRollers(pair.first, pair.length, *reduced, self.rms_roughness(values))
 
     def rms_roughness(self, values: dict):
         """Rms height of both lines together, m."""

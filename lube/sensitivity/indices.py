@@ -87,10 +87,7 @@ def sobol(
 
 
 def morris(
-    names: Sequence[str],
-    predict: Callable[[Array], Array],
-    seed: int,
-    choices: Mapping[str, int] | None = None,
+    names: Sequence[str], predict: Callable[[Array], Array], seed: int, choices: Mapping[str, int]
 ) -> dict[str, Array]:
     r"""Screen the factors by Morris' method.
 
@@ -102,7 +99,7 @@ def morris(
     ----------
     names, predict, seed
         As in `sobol`.
-    choices : mapping of str to int, optional
+    choices : mapping of str to int
         Factors that are choices, with the number of each.
 
     Returns
@@ -115,7 +112,6 @@ def morris(
         standard deviation that the factor causes while all others stay as they are. NaN where the
         film of a sample is not known.
     """
-    choices = choices or {}
     counts = np.array([choices.get(name, LEVELS) for name in names])
     ends = morris_sample.sample(_problem(names), TRAJECTORIES, num_levels=2, seed=seed).astype(int)
     ends = ends.reshape(TRAJECTORIES, -1, len(names))

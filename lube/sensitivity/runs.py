@@ -133,10 +133,8 @@ def design(deviating: Deviating, model: Model) -> tuple[Array, xr.Dataset]:
     study, (samples, points) = deviating.study, _sizes(deviating, model)
     unit = quantiles(samples, len(deviating.factors), study.seed)
     generator = np.random.default_rng((study.seed, samples))
-    chosen = {
-        name: ("run", np.array(each)[generator.integers(len(each), size=samples * points)])
-        for name, each in deviating.levels.items()
-    }
+    levels = deviating.levels.items()
+    chosen = {name: ("run", generator.choice(each, samples * points)) for name, each in levels}
     return np.repeat(unit, points, axis=0), xr.Dataset(chosen)
 
 
@@ -186,11 +184,8 @@ def run(
     """
     values = deviations(deviating.factors, unit)
     films = deviating.films(over_run(values), points, **model.shape(deviating.study.line_spec))
-    of_samples = [
-        (runs[same], film.isel(run=same))
-        for runs, film in films
-        for same in _same_samples(unit[runs])
-    ]
+    parts = ((runs, film, same) for runs, film in films for same in _same_samples(unit[runs]))
+    of_samples = [(runs[same], film.isel(run=same)) for runs, film, same in parts]
 
     def of_sample(sample):
         runs, film = sample

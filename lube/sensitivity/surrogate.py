@@ -66,13 +66,8 @@ def groups(
     moes = film["moes_load"], film["moes_material"]
     if gap.has_shape:
         ratio = xr.apply_ufunc(effective, *xr.broadcast(ratio, *moes))
-    found = [
-        ratio,
-        np.log(film["contact_half_width"] / longest),
-        np.log(shortest / longest),
-        np.log(strength * shortest ** (2.0 - hurst) * longest**hurst / rms),
-        hurst,
-    ]
+    found = [ratio, np.log(film["contact_half_width"] / longest), np.log(shortest / longest)]
+    found += [np.log(strength * shortest ** (2.0 - hurst) * longest**hurst / rms), hurst]
     if not spec.has_like_lines:
         first = spec.rms_height[0] * (1.0 + values.get("first_rms_roughness", 0.0))
         first = first * (1.0 + values.get("rms_roughness", 0.0))
@@ -125,13 +120,8 @@ class Interpolant:
         # Points that differ by rounding alone would make the equations singular.
         first = np.unique(points.round(9), axis=1, return_index=True)[1]
         weight = np.maximum(np.broadcast_to(weight, len(values)), LEAST_WEIGHT)[first]
-        functions = RBFInterpolator(
-            points[varied][:, first].T,
-            values[first],
-            kernel="cubic",
-            degree=1,
-            smoothing=SMOOTHING / weight**2,
-        )
+        options = {"kernel": "cubic", "degree": 1, "smoothing": SMOOTHING / weight**2}
+        functions = RBFInterpolator(points[varied][:, first].T, values[first], **options)
         return cls(middle[:, None], scale, functions)
 
     def __call__(self, variables: Array) -> Array:

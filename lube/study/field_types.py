@@ -126,10 +126,8 @@ def read_by(
     pydantic.BeforeValidator
         Metadata of an annotated type.
     """
-    written = Annotated[Any, WithJsonSchema(schema)]
-    return BeforeValidator(
-        located(kind=ValueError, hint=hint)(parse), json_schema_input_type=written
-    )
+    checked = located(kind=ValueError, hint=hint)(parse)
+    return BeforeValidator(checked, json_schema_input_type=Annotated[Any, WithJsonSchema(schema)])
 
 
 def _number(value, units, limits):
@@ -288,11 +286,7 @@ Model = TypeVar("Model", bound=StrictModel)
 
 
 def validate(
-    model: type[Model],
-    content: dict,
-    where: File,
-    error_type: type,
-    context: dict[str, Any] | None = None,
+    model: type[Model], content: dict, where: File, error_type: type, context: dict | None = None
 ) -> Model:
     """Build a model from a mapping, or report the first mistake in one line.
 
@@ -331,9 +325,7 @@ def validate(
 
 def _as_written(line, content):
     """Quote in an error message the value as written in the file, not as converted to SI."""
-    message = re.match(
-        r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)?(?: (?!together)[^\s,]+)?)(?![^\s,])", line
-    )
+    message = _KEY_AND_NUMBER.match(line)
     value = content
     for part in message[1].split(".") if message else ():
         value = value.get(part) if isinstance(value, dict) else None
@@ -341,6 +333,9 @@ def _as_written(line, content):
 
 
 _UNKNOWN = ("extra_forbidden", "invalid_key")
+_KEY_AND_NUMBER = re.compile(
+    r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)?(?: (?!together)[^\s,]+)?)(?![^\s,])"
+)
 
 # What pydantic's own kinds of mistake mean to someone who writes YAML.
 _NEEDED = {

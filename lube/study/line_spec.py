@@ -136,9 +136,8 @@ class LineSpec(StrictModel):
     def has_like_lines(self) -> bool:
         """Whether both lines differ by their rms height and their number of points alone."""
         first, second = self.lines
-        return first == second.model_copy(
-            update={"rms_height": first.rms_height, "points": first.points}
-        )
+        alike = {"rms_height": first.rms_height, "points": first.points}
+        return first == second.model_copy(update=alike)
 
     @property
     def is_isotropic(self) -> bool:
@@ -248,10 +247,8 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     """
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
     width = 2.0 * float(rollers.contact_half_width(largest_force))
-    lines = tuple(
-        _rough_line(rollers, roughness, name, rms, spacing, width)
-        for name, rms in zip(ROLLERS, rollers.rms_heights, strict=True)
-    )
+    each = zip(ROLLERS, rollers.rms_heights, strict=True)
+    lines = tuple(_rough_line(rollers, roughness, *one, spacing, width) for one in each)
     return LineSpec(lines=lines, spacing=spacing, height_step=roughness.height_step)
 
 
@@ -410,10 +407,8 @@ def _check_height_step(rms, step, name, roller):
     if 1e3 <= rms / step <= 1e7:
         return
     if 1e-9 <= rms <= 1e-5:
-        raise StudyError(
-            f"roughness.height_step: got {_length(step)}, need {_length(rms / 1e7)} "
-            f"to {_length(rms / 1e3)} for a roughness of {_length(rms)}"
-        )
+        needed = f"need {_length(rms / 1e7)} to {_length(rms / 1e3)} for a roughness of"
+        raise StudyError(f"roughness.height_step: got {_length(step)}, {needed} {_length(rms)}")
     key = f"{name}.{roller.kinds[0]}" if roller.kinds else "composite_rms_roughness"
     raise StudyError(f"rollers.{key}: got {_length(rms)}, need an rms height of 1 nm to 10 µm")
 

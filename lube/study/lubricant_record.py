@@ -442,10 +442,9 @@ def _record_path(name_or_path):
     near = nearest(name_or_path, shipped) if is_name else None
     lowest, *_, highest = GEAR_OIL_GRADES
     names = {_GRADED.sub(rf"\1<{lowest} to {highest}>", name): None for name in sorted(shipped)}
-    raise RecordError(
-        f"got {shown(name_or_path)}, need one of {', '.join(names)}, or a path of a .yaml file"
-        f"{f'; did you mean {near!r}?' if near else ''}"
-    )
+    needed = f"need one of {', '.join(names)}, or a path of a .yaml file"
+    hint = f"; did you mean {near!r}?" if near else ""
+    raise RecordError(f"got {shown(name_or_path)}, {needed}{hint}")
 
 
 def _beside(record_path, name):
@@ -453,7 +452,6 @@ def _beside(record_path, name):
     folder = record_path.parent
     inside = (folder / name).resolve().is_relative_to(folder.resolve())
     if Path(name).is_absolute() or not inside:
-        raise RecordError(
-            f"{record_path}: viscosity.csv: got {shown(name)}, need a file in the record's folder"
-        )
+        came = f"viscosity.csv: got {shown(name)}"
+        raise RecordError(f"{record_path}: {came}, need a file in the record's folder")
     return folder / name

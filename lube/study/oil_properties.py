@@ -181,10 +181,8 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
     rows = [_row(record, temperature, fit_temperature) for record in records]
     # Lubricants have different numbers of data points; NaN stands for the missing ones.
     table = xr.concat(rows, xr.Variable("lubricant", names), join="outer").drop_vars("data_point")
-    table = table.assign(
-        parameter_units=("parameter", list(PARAMETER_UNITS.values())),
-        law_source=("viscosity_law", [law.source for law in VISCOSITY_LAWS.values()]),
-    )
+    table["parameter_units"] = "parameter", list(PARAMETER_UNITS.values())
+    table["law_source"] = "viscosity_law", [law.source for law in VISCOSITY_LAWS.values()]
     levels = {"temperature": temperature, "fit_temperature": fit_temperature, "lubricant": names}
     laws = {"viscosity_law": list(VISCOSITY_LAWS), "parameter": list(PARAMETER_UNITS)}
     return label(table.assign_coords(levels | laws), "lubricant")
@@ -211,11 +209,9 @@ def _properties(record, substance, temperature):
     viscosity, density = substance.kinematic_viscosity(temperature), substance.density(temperature)
     wrong = ~(np.isfinite(viscosity) & (viscosity > 0.0))
     if wrong.any():
-        raise RangeError(
-            f"the viscosity law gives {viscosity[wrong][0]:g} m2/s at "
-            f"{temperature[wrong][0] - ZERO_CELSIUS:g} degC, need a positive viscosity; "
-            "narrow temperature_range"
-        )
+        first, at = viscosity[wrong][0], temperature[wrong][0] - ZERO_CELSIUS
+        came = f"the viscosity law gives {first:g} m2/s at {at:g} degC"
+        raise RangeError(f"{came}, need a positive viscosity; narrow temperature_range")
     dynamic, stated = viscosity * density, substance.stated_coefficient(temperature)
     return {
         "kinematic_viscosity": viscosity,

@@ -26,9 +26,7 @@ from lube.types import File
 _OF_BOTH = "composite_rms_roughness"
 """Key of the roughness of both rollers together."""
 
-_PATHS = {("rollers", name, "topography", "file") for name in ROLLERS} | {
-    ("experiment", "manifest")
-}
+_PATHS = {("experiment", "manifest"), *(("rollers", one, "topography", "file") for one in ROLLERS)}
 """Keys whose values are paths, apart from the list of lubricants."""
 
 _OF_ONE_STUDY = {"title", "summary", "date", "doi"}
@@ -127,9 +125,8 @@ def _chain(path, above=()):
     if base is None:
         return [(path, content)]
     if not isinstance(base, str) or not (path.parent / base).is_file():
-        raise StudyError(
-            f"{path}: based_on: got {shown(base)}, need the path from this file to a study's file"
-        )
+        needed = "need the path from this file to a study's file"
+        raise StudyError(f"{path}: based_on: got {shown(base)}, {needed}")
     return [(path, content), *_chain(path.parent / base, (*above, path))]
 
 
@@ -137,10 +134,9 @@ def _on_top(base, changes, where):
     """Merge changes into the study below, if any; they must have a new name."""
     if base and changes.get("name") in (None, base.get("name")):
         came = f"got {shown(changes['name'])}" if changes.get("name") else "missing"
-        raise StudyError(
-            f"{where}: name: {came}, need one other than {base.get('name')!r}, "
-            "or results of different values would be mixed"
-        )
+        needed = f"need one other than {base.get('name')!r}"
+        why = "or results of different values would be mixed"
+        raise StudyError(f"{where}: name: {came}, {needed}, {why}")
     match base:
         case {"about": dict(about)}:
             kept = {key: value for key, value in about.items() if key not in _OF_ONE_STUDY}

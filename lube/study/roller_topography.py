@@ -112,10 +112,8 @@ class RollerTopography(StrictModel):
             return {"rms_height": rms, "spectrum": spectrum, **lay}
         length = self._measured.lengths[0]
         if length < width:
-            raise DataError(
-                f"{self.file}: got a profile of {length:.3g} m, need one longer than the contact "
-                f"is wide, {width:.3g} m"
-            )
+            needed = f"need one longer than the contact is wide, {width:.3g} m"
+            raise DataError(f"{self.file}: got a profile of {length:.3g} m, {needed}")
         line = points, spacing, band[1], height_step
         rms, heights = topography_lines.measured_line(self.use, self._measured, *line)
         return {"rms_height": rms, "heights": heights}

@@ -37,7 +37,6 @@ def check_surfaces(spec: LineSpecLike, length: float, width: float, gap: Gap) ->
             "contact of the surface: the formula is for waves that run along rolling"
         )
     if length < width:
-        raise DataError(
-            f"rollers.length: got {length:g} m, need the contact width of {width:g} m or more"
-        )
+        needed = f"need the contact width of {width:g} m or more"
+        raise DataError(f"rollers.length: got {length:g} m, {needed}")
     surface_grid(spec, width)

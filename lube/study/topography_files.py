@@ -55,15 +55,11 @@ def _read_csv(path):
     (number, header), *rows = read_cells(path, DataError)
     units = units_of(header)
     if len(header) != 2 or list(units) != ["position", "height"]:
-        raise DataError(
-            f"{path}: line {number}: got {shown(','.join(header))}, need the columns "
-            "`position [mm],height [um]` with units of length"
-        )
+        needed = "need the columns `position [mm],height [um]` with units of length"
+        raise DataError(f"{path}: line {number}: got {shown(','.join(header))}, {needed}")
     values = np.array([_row(path, number, cells) for number, cells in rows]).reshape(-1, 2)
-    position, height = (
-        _in_metres(path, column, unit)
-        for column, unit in zip(values.T, units.values(), strict=True)
-    )
+    columns = zip(values.T, units.values(), strict=True)
+    position, height = (_in_metres(path, *column) for column in columns)
     return Topography(str(path), height, (_even_spacing(path, position),))
 
 
@@ -74,9 +70,8 @@ def _row(path, number, cells):
         hole = height.lower() in ("", "nan")
         return parse_number(position), np.nan if hole else parse_number(height)
     except (ValueError, LubeError):
-        raise DataError(
-            f"{path}: line {number}: got {shown(','.join(cells))}, need a position and a height"
-        ) from None
+        came = f"line {number}: got {shown(','.join(cells))}"
+        raise DataError(f"{path}: {came}, need a position and a height") from None
 
 
 def _read_netcdf(path):
@@ -148,8 +143,6 @@ def _even_spacing(path, position):
     spacing = (position[-1] - position[0]) / (position.size - 1)
     away = np.abs(position - position[0] - spacing * np.arange(position.size)).max()
     if spacing <= 0.0 or away > UNEVEN * spacing:
-        raise DataError(
-            f"{path}: got positions up to {away:.3g} m off an even grid of {spacing:.3g} m, need "
-            "rising, evenly spaced positions"
-        )
+        came = f"got positions up to {away:.3g} m off an even grid of {spacing:.3g} m"
+        raise DataError(f"{path}: {came}, need rising, evenly spaced positions")
     return float(spacing)

@@ -101,9 +101,7 @@ def table(
     """
     limits = (2.0 * np.pi / wave for wave in band)
     # Rounded: the last digits may depend on the machine.
-    wave_vector, density = (
-        tuple(map(_rounded, values)) for values in band_table(spectrum, *limits)
-    )
+    wave_vector, density = (tuple(map(_rounded, each)) for each in band_table(spectrum, *limits))
     rms = power_law_integral(np.array(wave_vector), np.array(density)) ** 0.5
     return _rounded(rms), (wave_vector, density)
 

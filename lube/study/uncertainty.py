@@ -142,13 +142,8 @@ class OfKurtosis(_Uncertain):
     """least and greatest value"""
 
 
-FilmFormula = Annotated[
-    str,
-    read_by(
-        lambda name: formula(f"{name}").name,
-        {"type": "string", "format": "text", "enum": list(FORMULAS)},
-    ),
-]
+_FORMULA = {"type": "string", "format": "text", "enum": list(FORMULAS)}
+FilmFormula = Annotated[str, read_by(lambda name: formula(f"{name}").name, _FORMULA)]
 """Name of a film formula."""
 
 
@@ -288,19 +283,13 @@ class Uncertainty(StrictModel):
 
     def factors(self) -> list[Factor]:
         """Return the factors of the probability that are given, in the order of the keys above."""
-        return [
-            Factor(name, group, given)
-            for name, field in type(self).model_fields.items()
-            if (group := field.json_schema_extra["group"]) != "electrical"
-            and (given := getattr(self, name)) is not None
-        ]
+        fields = type(self).model_fields
+        each = (Factor(name, fields[name].json_schema_extra["group"], one) for name, one in self)
+        return [factor for factor in each if factor.given and factor.group != "electrical"]
 
 
-CHOICES = [
-    name
-    for name, field in Uncertainty.model_fields.items()
-    if issubclass(get_args(field.annotation)[0], Choice)
-]
+_KINDS = {name: get_args(field.annotation)[0] for name, field in Uncertainty.model_fields.items()}
+CHOICES = [name for name, kind in _KINDS.items() if issubclass(kind, Choice)]
 """Factors that are choices, which cannot be measured."""
 
 
@@ -362,19 +351,15 @@ def check_uncertainty(study) -> None:
         study.check_window(min(study.operating_grid.force) * (1.0 + lower), "force.range")
         study.check_window(max(study.operating_grid.force) * (1.0 + upper), "force.range")
     if uncertain.hurst_exponent and not all(line.hurst_exponent for line in spec.lines):
-        raise StudyError(
-            "hurst_exponent: got a range for lines with a measured spectrum, on which nothing "
-            "depends, need none"
-        )
+        came = "got a range for lines with a measured spectrum, on which nothing depends"
+        raise StudyError(f"hurst_exponent: {came}, need none")
     if uncertain.resistivity and not study.conducts:
         raise StudyError("resistivity: got a range for an insulator, need none")
     if uncertain.pressure_viscosity_definition:
         for record in study.lubricants:
             if record.pressure_viscosity.gold_base is None:
-                raise StudyError(
-                    f"pressure_viscosity_definition: got choices, but {record.name} states the "
-                    "definition of its coefficient, need none"
-                )
+                came = f"choices, but {record.name} states the definition of its coefficient"
+                raise StudyError(f"pressure_viscosity_definition: got {came}, need none")
     if uncertain.inlet_shear_heating:
         study.check_conductivity("got choices, need")
     _check_bands(study)
@@ -386,10 +371,8 @@ def _check_temperatures(study, ends):
         coldest, hottest = record.valid_temperatures
         for level, end in ((min(levels), ends[0]), (max(levels), ends[1])):
             if not coldest - BEYOND <= level + end <= hottest + BEYOND:
-                raise StudyError(
-                    f"temperature.range: got {level + end:g} degC, need {coldest - BEYOND:g} to "
-                    f"{hottest + BEYOND:g} degC for {record.name}"
-                )
+                needed = f"{coldest - BEYOND:g} to {hottest + BEYOND:g} degC for {record.name}"
+                raise StudyError(f"temperature.range: got {level + end:g} degC, need {needed}")
 
 
 def _check_bands(study):
@@ -403,16 +386,14 @@ def _check_bands(study):
     shorter = min(line.longest_wavelength for line in narrow.lines)
     longer = max(line.shortest_wavelength for line in narrow.lines)
     if longer >= shorter:
-        raise StudyError(
-            f"shortest_wavelength.range: got up to {with_unit(longer, 'm', 3)}, need less than "
-            f"the longest wavelength, {with_unit(shorter, 'm', 3)}"
-        )
+        came = f"got up to {with_unit(longer, 'm', 3)}"
+        needed = f"need less than the longest wavelength, {with_unit(shorter, 'm', 3)}"
+        raise StudyError(f"shortest_wavelength.range: {came}, {needed}")
     least = 2.0 * math.pi / wide.q_max
     if least < 2.0 * spec.spacing:
-        raise StudyError(
-            f"shortest_wavelength.range: got down to {with_unit(least, 'm', 3)}, need two points "
-            f"of the grid or more, {with_unit(2.0 * spec.spacing, 'm', 3)}"
-        )
+        came = f"got down to {with_unit(least, 'm', 3)}"
+        needed = f"need two points of the grid or more, {with_unit(2.0 * spec.spacing, 'm', 3)}"
+        raise StudyError(f"shortest_wavelength.range: {came}, {needed}")
     models = uncertain.contact_model.choices if uncertain.contact_model else study.contact_model
     if "surface" in models:
         study.check_surfaces(wide)

@@ -85,19 +85,16 @@ def _states(record, point) -> Iterable[tuple[float, float, str]]:
 
 def _check_agreement(one, other, words):
     if max(one, other) > (1.0 + AGREEMENT) * min(one, other):
-        raise RecordError(
-            f"viscosity: got {words}, need one value, or several within {100 * AGREEMENT:g} %"
-        )
+        needed = f"need one value, or several within {100 * AGREEMENT:g} %"
+        raise RecordError(f"viscosity: got {words}, {needed}")
 
 
 def _check_isotherms(record):
     given, alpha = record.pressure_viscosity.given, record.pressure_viscosity
     if bool(given) == bool(record.isotherms):
         came = f"{given[0]} and viscosities under pressure" if given else "none"
-        raise RecordError(
-            f"pressure_viscosity: got {came}, need one of gold_base, value, points, or viscosities "
-            "under pressure"
-        )
+        needed = "need one of gold_base, value, points, or viscosities under pressure"
+        raise RecordError(f"pressure_viscosity: got {came}, {needed}")
     for temperature, pairs in record.isotherms.items():
         at = f"at {temperature:g} degC"
         for (low, thin), (high, thick) in pairwise([(0.0, 1.0), *pairs]):
@@ -105,26 +102,21 @@ def _check_isotherms(record):
                 words = f"{thin:.4g} and {thick:.4g} times that at atmospheric pressure {at}"
                 _check_agreement(thin, thick, f"{words} and {_absolute(high)}")
             elif thick <= thin:
-                raise RecordError(
-                    f"viscosity: got no rise {at} from {_absolute(low)} to {_absolute(high)}, "
-                    "need a rise with pressure"
-                )
+                came = f"got no rise {at} from {_absolute(low)} to {_absolute(high)}"
+                raise RecordError(f"viscosity: {came}, need a rise with pressure")
         count, (most, rise) = len({pressure for pressure, _ in pairs}), pairs[-1]
         if count < LEAST_PRESSURES:
-            raise RecordError(
-                f"viscosity: got {count} pressures above atmospheric {at}, need {LEAST_PRESSURES} "
-                "or more"
-            )
+            came = f"got {count} pressures above atmospheric {at}"
+            raise RecordError(f"viscosity: {came}, need {LEAST_PRESSURES} or more")
         if alpha.definition == "reciprocal-asymptotic" and rise < LEAST_RISE:
             raise RecordError(
                 f"viscosity: got a rise to {rise:.3g} times that at atmospheric pressure {at}, "
                 f"definition 'reciprocal-asymptotic' needs {LEAST_RISE:g} times or more"
             )
         if alpha.span is not None and alpha.span > (1.0 + ROUNDING) * most:
-            raise RecordError(
-                f"pressure_viscosity.pressure: got {alpha.pressure / 1e6:g} MPa, need at most "
-                f"{_absolute(most)}, where the viscosities {at} end"
-            )
+            came = f"pressure_viscosity.pressure: got {alpha.pressure / 1e6:g} MPa"
+            needed = f"need at most {_absolute(most)}, where the viscosities {at} end"
+            raise RecordError(f"{came}, {needed}")
 
 
 def _absolute(pressure):

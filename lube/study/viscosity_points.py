@@ -35,9 +35,8 @@ class ViscosityPoint(StrictModel):
         if self.kinematic_viscosity is None and self.dynamic_viscosity is None:
             raise ValueError("got no viscosity, need kinematic_viscosity or dynamic_viscosity")
         if self.is_under_pressure and self.kinematic_viscosity is not None:
-            raise ValueError(
-                f"got kinematic_viscosity at {self.pressure / 1e6:g} MPa, need dynamic_viscosity"
-            )
+            at = f"at {self.pressure / 1e6:g} MPa"
+            raise ValueError(f"got kinematic_viscosity {at}, need dynamic_viscosity")
         return self
 
     @property
@@ -83,14 +82,12 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
     for number, cells in rows:
         where = f"{path}: line {number}"
         if len(cells) != len(columns):
-            raise RecordError(
-                f"{where}: got {len(cells)} values, need one for each of {len(columns)} columns"
-            )
+            needed = f"need one for each of {len(columns)} columns"
+            raise RecordError(f"{where}: got {len(cells)} values, {needed}")
         with_points = [cell for cell in cells if "." in cell]
         if decimal_comma and with_points:  # thousands separators, or mistakes
-            raise RecordError(
-                f"{where}: got {shown(with_points[0])} in a file with decimal commas, need no point"
-            )
+            came = f"got {shown(with_points[0])} in a file with decimal commas"
+            raise RecordError(f"{where}: {came}, need no point")
         pairs = zip(columns.items(), cells, strict=True)
         content = {name: f"{cell.replace(',', '.')} {units}" for (name, units), cell in pairs}
         points.append(validate(ViscosityPoint, content, where, RecordError))

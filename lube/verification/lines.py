@@ -77,13 +77,10 @@ def films_of(study: Study, ratios: Array) -> xr.Dataset:
     """Flat films of some lambda ratios, at the contact width of the study's middle force."""
     forces = study.operating_grid.force
     half_width = study.rollers.contact_half_width(sorted(forces)[len(forces) // 2])
-    return xr.Dataset(
-        {
-            "film_thickness": ("lambda_ratio", ratios * math.hypot(*study.line_spec.rms_height)),
-            "contact_half_width": half_width,
-            "reduced_modulus": study.rollers.reduced_modulus,
-        }
-    )
+    films = "lambda_ratio", ratios * math.hypot(*study.line_spec.rms_height)
+    modulus = study.rollers.reduced_modulus
+    table = {"film_thickness": films, "contact_half_width": half_width}
+    return xr.Dataset(table | {"reduced_modulus": modulus})
 
 
 def curves(study: Study, threads: int | None) -> Curves:

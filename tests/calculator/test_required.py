@@ -11,6 +11,7 @@ import lube
 from lube import LubeError, Rollers
 from lube.calculator import film_search, required
 from lube.calculator.operating_points import ensemble
+from lube.grid.gap import PLAIN
 
 RUNS = {"realisations": 32, "seed": 2}
 ONE = {"realisations": 1, "seed": 2}
@@ -259,8 +260,8 @@ def test_of_two_films_of_a_share_the_thicker_is_named(merging):
                 "reduced_modulus": merging.pair.reduced_modulus,
             }
         )
-        contact = ensemble(films, merging, *FEW.values())["breakthrough_probability_mean"].values
-        thin, most, there, beyond = contact
+        contact = ensemble(films, merging, *FEW.values(), 0.0, PLAIN)
+        thin, most, there, beyond = contact["breakthrough_probability_mean"].values
         assert beyond < share < most
         assert thin < 0.995 * largest
         assert there == pytest.approx(share, rel=0.01)

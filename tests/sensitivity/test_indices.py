@@ -38,7 +38,7 @@ def test_a_group_has_the_effects_of_its_factors_together():
 
 
 def test_the_elementary_effects_of_a_linear_function_are_its_slopes():
-    found = morris(NAMES, ishigami, seed=1)
+    found = morris(NAMES, ishigami, 1, {})
     np.testing.assert_allclose(found["elementary_effect"][:, 1], [3.0, 2.0, 0.0], atol=1e-9)
     np.testing.assert_allclose(found["elementary_effect_deviation"][:, 1], 0.0, atol=1e-9)
     assert (found["elementary_effect_deviation"][[0, 2], 0] > 1.0).all()
@@ -64,7 +64,7 @@ def test_a_choice_among_several_goes_from_any_to_any():
 
 
 def test_screened_deviations_are_those_of_the_total_effects():
-    found = morris(NAMES, ishigami, seed=1)["screened_deviation"]
+    found = morris(NAMES, ishigami, 1, {})["screened_deviation"]
     exact = [0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2, 49.0 / 8.0, 0.0]
     together = 0.01 * np.pi**8 * (1 / 18 - 1 / 50)
     wavy = np.sqrt(np.add(exact, [together, 0.0, together]))
@@ -80,12 +80,14 @@ def test_a_point_without_a_value_or_without_a_change_has_no_indices():
 
     found, _ = sobol(NAMES, predict, seed=1, base_samples=16)
     assert all(np.isnan(each).all() for each in found.values())
-    assert np.isnan(morris(NAMES, predict, seed=1)["elementary_effect"][:, 0]).all()
+    assert np.isnan(morris(NAMES, predict, 1, {})["elementary_effect"][:, 0]).all()
 
 
 def test_intervals_are_the_same_each_time_for_any_seed():
     for seed in (0, 1, 2**40):
         one, other = (sobol(NAMES, ishigami, seed, base_samples=64)[0] for _ in range(2))
         np.testing.assert_array_equal(one["total_effect_error"], other["total_effect_error"])
-        first, second = (morris(NAMES, ishigami, seed)["elementary_effect_error"] for _ in range(2))
+        first, second = (
+            morris(NAMES, ishigami, seed, {})["elementary_effect_error"] for _ in range(2)
+        )
         np.testing.assert_array_equal(first, second)
