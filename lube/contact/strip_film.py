@@ -210,6 +210,7 @@ class StripFilm:
         return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
 
 
+@functools.lru_cache(maxsize=1)
 def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
     """Moments of the surface that a pair of lines stands for, expected from their spectra.
 

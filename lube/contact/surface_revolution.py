@@ -5,8 +5,9 @@ the sum of both surfaces matters, and it passes through the contact as one surfa
 together of independent pieces, each as wide and as long as a few of the longest waves. The joins
 cut few contacts.
 
-Of a piece only summits are kept whose boundary layer breaks. In contact they are paraboloids. Where
-contacts merge, below a lambda ratio of some 1.5, each summit still counts as one.
+Of a piece only its summits are kept, and how high the saddles between them are: these tell which
+summits are of one contact. In contact they are paraboloids, and the areas of those of one contact
+add up. A contact breaks its boundary layer if its highest summit in the strip is sharp enough.
 """
 
 import math
@@ -16,10 +17,11 @@ from dataclasses import replace
 
 import numpy as np
 import scipy.ndimage
+import scipy.optimize
 import xarray as xr
 
-from lube.contact.surface_answers import COARSEST
 from lube.contact.strip_film import COLUMNS
+from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import mean_breaking_curvature, strip_films
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.gap import PLAIN, Gap
@@ -30,11 +32,9 @@ from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 from lube.types import Array
 
-ENOUGH = 100.0
+ENOUGH = 25.0
 """Breakthroughs expected in the strip from which on lower summits are left out: contact is certain,
 and its resistance far below that of the leads."""
-THICKER = 1.05
-"""Ratio of neighbouring films among which this number is looked for."""
 
 
 def revolution_contact(
@@ -136,7 +136,10 @@ class _Passage:
             oil = self._answer.of_waves([waves])
             places = np.stack([summits.row, summits.column]) / (1 << oil.shift)
             fields = np.moveaxis(oil.fields, -1, 0)
-            by_oil = [scipy.ndimage.map_coordinates(one, places, order=1) for one in fields]
+            by_oil = [
+                scipy.ndimage.map_coordinates(one, places, order=1, mode="nearest")
+                for one in fields
+            ]
             by_oil = np.stack(by_oil, axis=1)
             columns = np.arange(self._film.size) / (1 << oil.shift)
             nodes = np.arange(oil.shapes.shape[0])
@@ -146,7 +149,7 @@ class _Passage:
 
 
 def _selected(summits, some):
-    """Some summits, given by their numbers, in this order."""
+    """Keep some summits, given by their numbers, in this order."""
     number = np.full(summits.row.size, -1, np.int32)
     number[some] = np.arange(some.size)
     kept = Summits(*(each[some] for each in summits))
@@ -167,7 +170,10 @@ def _most_added(spec, strip):
 
 def _lowest(strip, spec, length, sharp):
     """Height above which summits are looked at, m."""
-    drawn, times = replace(strip, answers=None), 1.0
-    while drawn.thicker(times).expected(spec, length, sharp)[1] > ENOUGH:
-        times *= THICKER
+    drawn = replace(strip, answers=None)
+
+    def too_many(times):
+        return drawn.thicker(times).expected(spec, length, sharp)[1] - ENOUGH
+
+    times = scipy.optimize.brentq(too_many, 1.0, 40.0, xtol=0.01) if too_many(1.0) > 0.0 else 1.0
     return times * strip.films(strip.width / COLUMNS).min()

@@ -12,7 +12,6 @@ import numpy as np
 from lube.kernels.compiler import inlined, kernel
 from lube.types import Array, Pair
 
-
 LONGEST = 0.1
 """Least Gaussian curvature of a summit over the square of its mean curvature: on a longer ridge the
 paraboloid would leave the surface."""
@@ -80,8 +79,8 @@ def connected_summits(heights: Array, curvatures: Array, spacing: Pair, least: f
     # Points are taken from the highest to the lowest. Each belongs to the summit of a neighbour, is
     # a new summit, or connects several.
     summit_of = np.full(flat.size, -1, np.int32)
-    tops, roots = np.empty(places.size // 4 + 2, np.int64), np.empty(places.size // 4 + 2, np.int32)
-    saddle, higher = np.empty(tops.size), np.empty(tops.size, np.int32)
+    tops, saddle = np.empty(places.size, np.int64), np.empty(places.size)
+    roots, higher = np.empty(places.size, np.int32), np.empty(places.size, np.int32)
     count = 0
     for place in places:
         row, column = place // columns, place % columns

@@ -1,8 +1,9 @@
 """The simulated twin-disc rig: from the metal contact of its rollers to the logged voltage.
 
-Its rollers are realisations that no simulation of the study uses. One pair runs all operating
-points, turn after turn, as on a real rig. If the study says so, several pairs run one after the
-other, and the roughness drifts from revolution to revolution.
+Its rollers are realisations that no simulation of the study uses: lines, or surfaces over the whole
+length of the rollers. One pair runs all operating points, turn after turn, as on a real rig. If the
+study says so, several pairs run one after the other, and the roughness drifts from revolution to
+revolution.
 
 A bias voltage drives a current through a series resistor, the leads and the contact. The film
 around the contact is a capacitor, and a leak is parallel to it. An amplifier of finite range
@@ -25,11 +26,13 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.rough_pair import drawn
+from lube.contact.surface_revolution import revolution_contact
 from lube.contact.windows import study_windows
 from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import surface_speeds
 from lube.kernels.circuit import sampled_voltage
 from lube.physics.electrical import contact_resistance, film_capacitance
+from lube.study.line_spec import LineSpec
 from lube.study.rig_settings import Rig
 from lube.study.study import Study
 from lube.types import Array, Pair, Ratios
@@ -37,11 +40,12 @@ from lube.types import Array, Pair, Ratios
 log = logging.getLogger(__name__)
 
 TOGETHER = 16
-"""Number of operating points whose contact at all time steps is in memory at once."""
+"""Number of operating points whose contact of lines at all time steps is in memory at once."""
+_MOTION = "entrainment_speed", "slide_to_roll_ratio"
 
 
 def simulated_revolutions(
-    study: Study, points: xr.Dataset
+    study: Study, points: xr.Dataset, threads: int | None = None
 ) -> Iterator[tuple[int, int, "Revolution"]]:
     """Run all pairs of the rig's rollers, each at all operating points.
 
@@ -52,6 +56,8 @@ def simulated_revolutions(
     points : xarray.Dataset
         Over operating_point, from `lube.grid.operating_points.operating_points`; all of one
         slide-to-roll ratio.
+    threads : int, optional
+        Threads that draw surfaces; they do not change the results.
 
     Yields
     ------
@@ -64,16 +70,50 @@ def simulated_revolutions(
     """
     of_pairs = np.reshape(study.rig_realisations, (study.rig.pairs, -1)).tolist()
     for pair, numbers in enumerate(of_pairs):
-        drawn_once = functools.cache(partial(drawn, study))
-        for begin in range(0, points.sizes["operating_point"], TOGETHER):
-            some = points.isel(operating_point=slice(begin, begin + TOGETHER))
-            for turn, contacts in enumerate(_turns(study, some, map(drawn_once, numbers))):
+        if study.rig.has_surfaces:
+            runs = _surface_runs(study, points, numbers[0], threads)
+        else:
+            runs = _line_runs(study, points, numbers)
+        for begin, step, turns in runs:
+            for turn, contacts in enumerate(turns):
                 for number, contact in enumerate(contacts, begin):
                     seed = (study.seed, numbers[0], number + 1, turn)
                     point = points.isel(operating_point=number)
-                    yield pair, number, recorded(contact, point, study, seed)
-            run = begin + some.sizes["operating_point"]
-            log.info("simulated rig: pair %d, %d operating points", pair + 1, run)
+                    speed, slip = (point[name].item() for name in _MOTION)
+                    time_step = step / max(surface_speeds(speed, slip))
+                    yield pair, number, recorded(contact, point, study, seed, time_step)
+            log.info("simulated rig: pair %d, %d operating points", pair + 1, number + 1)
+
+
+def _surface_runs(study, points, number, threads):
+    """As `_line_runs`, of surfaces at all operating points."""
+    spec, seeds = study.line_spec, (study.seed, number)
+    choices = study.boundary_layer, seeds, study.gap, threads
+    lengths = revolution_contact(spec, study.rollers.length, points, *choices)
+    steps = lengths.shape[1]
+    parts = (lengths[:, : max(round(part * steps), 1)] for part in _parts(study))
+    turns = ((whole_points(each, spec) for each in part) for part in parts)
+    yield 0, spec.points[0] * spec.spacing / steps, turns
+
+
+def whole_points(length: Array, spec: LineSpec) -> Array:
+    """Lengths of contact, m, as whole grid points of the lines, int32, one at least in contact."""
+    return np.maximum(np.rint(length / spec.spacing), length > 0.0).astype(np.int32)
+
+
+def _parts(study):
+    """Part of each turn that the rig runs: only the last may be less than 1."""
+    return [
+        min(study.rig.revolutions - turn, 1.0) for turn in range(math.ceil(study.rig.revolutions))
+    ]
+
+
+def _line_runs(study, points, numbers):
+    """Yield the first of some operating points, the way in a time step, m, and turns of lines."""
+    drawn_once = functools.cache(partial(drawn, study))
+    for begin in range(0, points.sizes["operating_point"], TOGETHER):
+        some = points.isel(operating_point=slice(begin, begin + TOGETHER))
+        yield begin, study.line_spec.spacing, _turns(study, some, map(drawn_once, numbers))
 
 
 def _turns(study, points, pairs):
@@ -84,8 +124,7 @@ def _turns(study, points, pairs):
         steps = revolution(pair, ratios)
         if not turn or not repeats(study, ratios):
             contacts = windows.trace(pair, slip, turn * steps)
-        part = min(study.rig.revolutions - turn, 1.0)
-        yield contacts[:, : max(round(part * steps), 1)]
+        yield contacts[:, : max(round(_parts(study)[turn] * steps), 1)]
 
 
 def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
@@ -105,7 +144,7 @@ def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
     """
     drift, pairs = study.rig.drift, iter(pairs)
     pair = next(pairs)
-    for turn in range(math.ceil(study.rig.revolutions)):
+    for turn, _ in enumerate(_parts(study)):
         if turn and drift > 0.0:
             both = zip(pair, next(pairs), strict=True)
             pair = tuple(_renewed(old, new, drift) for old, new in both)
@@ -117,7 +156,7 @@ def recorded(
     point: xr.Dataset,
     study: Study,
     seed: tuple[int, ...],
-    time_step: float | None = None,
+    time_step: float,
 ) -> "Revolution":
     """Take contact at an operating point for what the rig records.
 
@@ -131,9 +170,8 @@ def recorded(
         Its rollers, oil between them and resistivity.
     seed : tuple of int
         Seed of the noise.
-    time_step : float, optional
-        Time between two steps, s; by default that in which the faster surface moves by one grid
-        point of the lines.
+    time_step : float
+        Time between two steps, s.
 
     Returns
     -------
@@ -146,11 +184,8 @@ def recorded(
         study.rollers.length,
         study.rig.oil_permittivity,
     )
-    slip = point["slide_to_roll_ratio"].item()
-    speeds = surface_speeds(point["entrainment_speed"].item(), slip)
-    spacing = study.line_spec.spacing
-    time_step = time_step or spacing / max(speeds)
-    return Revolution(contact, time_step, study.resistivity / spacing, capacitance, seed)
+    spot_resistance = study.resistivity / study.line_spec.spacing
+    return Revolution(contact, time_step, spot_resistance, capacitance, seed)
 
 
 def repeats(study: Study, ratios: Ratios) -> bool:

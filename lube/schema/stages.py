@@ -209,6 +209,7 @@ _ROWS = (
         "experiment",
         "contact shares of the rig's records",
         inputs=("film",),
+        inputs_with={"surface_response": "rig_is_answered"},
         values={
             **_LINES,
             **_CONTACT,
@@ -225,6 +226,7 @@ _ROWS = (
         "rig",
         "voltage and resistance at the trace points, and contact shares by bandwidth",
         inputs=("film",),
+        inputs_with={"surface_response": "rig_is_answered"},
         values=_named("traces"),
         same_values=("experiment",),
         only_with=(*_LINE, "conducts"),
@@ -349,6 +351,7 @@ _ROWS = (
         "electrical",
         "what electrical meters read at every operating point, some seconds",
         inputs=("film", "contact"),
+        inputs_with={"surface_response": "rig_is_answered"},
         values=_named("resistivity resistivity_range rollers.length rig")
         | {"experiment": "evaluation"},
         target="electrical",

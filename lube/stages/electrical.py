@@ -3,8 +3,10 @@
 import numpy as np
 import xarray as xr
 
+from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_profiles import six_digits
+from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip, known_films, operating_points
 from lube.physics import electrical
@@ -17,14 +19,16 @@ from lube.types import Datasets
 
 PAIRS = 8
 """Pairs of lines on which contact is sampled under films that a voltage makes thinner."""
+FEWER = 3
+"""How many times fewer surfaces are sampled under these films than for ``areal.nc``."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     r"""Make ``electrical.nc``; see `lube.stages`.
 
-    All values are for contact of the line, the first film formula and the slide-to-roll ratio
-    nearest to pure rolling.
-    The simulated rig runs for one revolution at each operating point.
+    All values are for the first film formula and the slide-to-roll ratio nearest to pure rolling,
+    and for contact of the line, or of the surface if the simulated rig's rollers have surfaces. The
+    rig runs for one revolution at each operating point.
 
     Notes
     -----
@@ -36,24 +40,29 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     and a meter that takes it for two plates reads a film that is thinner than the mean gap.
     """
     slip = rolling(study.slips)
-    film = at_slip(inputs["film"], slip).isel(film_formula=0, drop=True).transpose(*POINT_DIMS, ...)
-    table = _capacitances(study, film)
-    contact = inputs["contact"].isel(film_formula=0, drop=True)
-    contact = contact.sel(slide_to_roll_ratio=slip, drop=True)
-    length = contact["mean_contact_length"].mean("realisation")
-    share = contact["breakthrough_probability_mean"]
-    table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
+    film = at_slip(with_surface_responses(inputs), slip).isel(film_formula=0, drop=True)
+    film = film.transpose(*POINT_DIMS, ...)
+    table, rigs = _capacitances(study, film), {OWN_RIG: study.rig}
+    rigs |= {name: study.rig.like(name) for name in PRESETS}
+    readings, length = _readings(study, film, rigs, slip, threads)
+    share, ratio = readings["true_contact_share"], xr.full_like(length, np.nan)
+    if not study.rig.has_surfaces:
+        contact = inputs["contact"].isel(film_formula=0, drop=True)
+        contact = contact.sel(slide_to_roll_ratio=slip, drop=True)
+        length = contact["mean_contact_length"].mean("realisation")
+        share = contact["breakthrough_probability_mean"]
+        ratio = length / (2.0 * film["contact_half_width"])
+    table["breakdown_ratio"] = ratio
     closed = study.resistivity * share / length.where(length > 0.0)
     deviations = 0.0, *(study.resistivity_range or (np.nan, np.nan))
     limits = [closed * (1.0 + deviation) for deviation in deviations]
     table |= values_with_limits("closed_resistance", limits)
-    rigs = {OWN_RIG: study.rig} | {name: study.rig.like(name) for name in PRESETS}
     capacitance = table["capacitance"] + table["surrounding_capacitance"]
     circuit = share, table["closed_resistance"].fillna(1.0), capacitance
     phases = [np.degrees(_phase(rig, *circuit)) for rig in rigs.values()]
     table["impedance_phase"] = xr.concat(phases, "rig", coords="minimal", compat="override")
     found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(six_digits)
-    found = found.merge(_readings(study, film, rigs, slip), join="exact")
+    found = found.merge(readings, join="exact")
     found["discharge_probability"] = _discharges(study, film, rigs, threads)
     found = found.drop_attrs().assign_coords(rig=list(rigs), reading=list(READINGS))
     found = found.assign_coords(threshold=list(study.experiment.thresholds))
@@ -90,30 +99,34 @@ def _capacitances(study, film):
     }
 
 
-def _readings(study, film, rigs, slip):
-    """Contact shares by all rigs and readings, and the true ones."""
+def _readings(study, film, rigs, slip, threads):
+    """Contact shares by all rigs and readings, and the true ones; mean length of contact, m."""
     one_turn = study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})
     once = study.model_copy(update={"rig": one_turn})
     points = operating_points(film, slip)
     known = np.flatnonzero(known_films(points, study.gap))
     ways = len(READINGS) + len(study.experiment.thresholds)
-    shares = np.full((points.sizes["operating_point"], 1 + len(rigs) * ways), np.nan)
-    for _, number, revolution in simulated_revolutions(once, points.isel(operating_point=known)):
-        found = [np.count_nonzero(revolution.contact) / revolution.contact.size]
+    shares = np.full((points.sizes["operating_point"], 2 + len(rigs) * ways), np.nan)
+    some = points.isel(operating_point=known)
+    for _, number, revolution in simulated_revolutions(once, some, threads):
+        contact = revolution.contact
+        found = [contact.mean() * study.line_spec.spacing, np.count_nonzero(contact) / contact.size]
         for rig in rigs.values():
             for read in read_shares(revolution.voltage(rig), study.experiment, rig):
                 found += [*read]
         shares[known[number]] = found
     sizes = [film.sizes[name] for name in POINT_DIMS]
-    read = shares[:, 1:].T.reshape(len(rigs), ways, *sizes)
+    read = shares[:, 2:].T.reshape(len(rigs), ways, *sizes)
     read, by_threshold = np.split(read, [len(READINGS)], axis=1)
-    return xr.Dataset(
+    length = xr.DataArray(shares[:, 0].reshape(sizes), dims=POINT_DIMS)
+    found = xr.Dataset(
         {
-            "true_contact_share": (POINT_DIMS, shares[:, 0].reshape(sizes)),
+            "true_contact_share": (POINT_DIMS, shares[:, 1].reshape(sizes)),
             "read_contact_share": (("rig", "reading", *POINT_DIMS), read),
             "threshold_contact_share": (("rig", "threshold", *POINT_DIMS), by_threshold),
         }
     )
+    return found, length
 
 
 def _discharges(study, film, rigs, threads):
@@ -125,6 +138,11 @@ def _discharges(study, film, rigs, threads):
 
     def touching(closer):
         thickness = (film["film_thickness"] - closer).clip(min=0.0)
+        if study.rig.has_surfaces:
+            given = study.line_spec, study.rollers.length, film, study.boundary_layer, study.seed
+            thicker = (thickness / film["film_thickness"]).values.ravel()
+            contact = surface_contact(*given, study.gap, threads, fewer=FEWER, thicker=thicker)
+            return contact["geometric_contact_probability"].values
         windows = study_windows(study, film.assign(film_thickness=thickness))
         return windows.on_pairs(study.line_spec, study.seed, PAIRS, threads)[:, 0].mean(axis=0)
 

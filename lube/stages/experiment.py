@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import DataError, LubeError
+from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
 from lube.grid.operating_points import known_films, levels_at, operating_points
 from lube.inference.study_shares import levels_named
@@ -29,13 +30,13 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``experiment.nc``; see `lube.stages`."""
     if study.experiment.manifest:
         return measured_experiment(read_manifest(study.experiment.manifest), study)
-    return simulated_experiment(inputs["film"], study)
+    return simulated_experiment(with_surface_responses(inputs), study, threads)
 
 
 # Simulated records
 
 
-def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
+def simulated_experiment(film: xr.Dataset, study: Study, threads: int = 1) -> xr.Dataset:
     """Let the simulated rig record all operating points, and evaluate its records.
 
     The film thicknesses are those of the film table's first formula.
@@ -43,9 +44,11 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
     Parameters
     ----------
     film : xarray.Dataset
-        A ``film`` dataset.
+        A ``film`` dataset; with its responses if the oil answers surfaces on the rig.
     study : Study
         Its rig and the rig's rollers, evaluation of records, boundary layer and seed.
+    threads : int, optional
+        Threads that draw surfaces; they do not change the results.
 
     Returns
     -------
@@ -72,7 +75,7 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
         for pair in range(study.rig.pairs)
         for number, here in enumerate(levels)
     }
-    for pair, number, revolution in simulated_revolutions(study, points):
+    for pair, number, revolution in simulated_revolutions(study, points, threads):
         records[pair, number].add_revolution(revolution)
     rows = [
         record.evaluate() | {"record": _name_of_point(levels[number], pair, study)}

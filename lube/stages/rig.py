@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.grid.film_responses import with_surface_responses
 from lube.grid.operating_points import known_rows
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import record_counter
@@ -37,7 +38,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     DataError
         If the film is known at none of the points.
     """
-    points = known_rows(inputs["film"], study.trace_points, study.gap)
+    points = known_rows(with_surface_responses(inputs), study.trace_points, study.gap)
     count = points.sizes["operating_point"]
     rigs = [study.rig.model_copy(update={"bandwidth": band}) for band in BANDWIDTHS]
     interval = 1.0 / study.rig.sampling_rate
@@ -46,7 +47,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         for _ in range(count)
     ]
     voltages, steps = {}, np.zeros((count, 2), int)
-    for _, number, revolution in simulated_revolutions(study, points):
+    for _, number, revolution in simulated_revolutions(study, points, threads):
         if number not in voltages:
             voltages[number] = revolution.voltage(study.rig)
         for rig, counter in zip(rigs, counters[number], strict=True):

@@ -7,7 +7,7 @@ from lube.contact.surface_trace import surface_traces
 from lube.grid.film_responses import with_surface_responses
 from lube.grid.operating_points import rows_at
 from lube.physics.electrical import contact_resistance, resistance_from_voltage
-from lube.rig.simulator import recorded
+from lube.rig.simulator import recorded, whole_points
 from lube.schema import CONTACT_DIMS, label
 from lube.study.study import Study
 from lube.types import Datasets
@@ -51,6 +51,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 def _logged(study, point):
     """Resistances that the study's rig logs, ohm."""
-    contact = np.rint(point["contact_length"].values / study.line_spec.spacing).astype(np.int32)
+    contact = whole_points(point["contact_length"].values, study.line_spec)
     record = recorded(contact, point, study, (study.seed,), point["time"].values[1])
     return resistance_from_voltage(record.voltage(study.rig), study.rig)

@@ -102,6 +102,10 @@ class Rig(StrictModel, validate_default=True):
     """rms noise at the amplifier's input"""
     revolutions: Annotated[float, quantity(None, least=0.01, most=1000.0)] = 12
     """revolutions of the roller with the faster surface in each simulated record"""
+    contact_model: Literal["line", "surface"] = "line"
+    """what touches on the simulated rig: two roughness lines, or the rough surfaces over the whole
+    length of the rollers, in pure rolling of rollers of one radius
+    """
     pairs: Annotated[StrictInt, Field(ge=1, le=1000)] = 1
     """pairs of rollers that the simulated rig runs, one after the other; each makes a record at
     every operating point
@@ -130,6 +134,11 @@ class Rig(StrictModel, validate_default=True):
         """Return this rig with the settings of a known one."""
         known = Rig(preset=preset).model_dump(include={"preset", *PRESETS[preset].settings})
         return self.model_copy(update=known)
+
+    @property
+    def has_surfaces(self) -> bool:
+        """Whether rough surfaces touch on the simulated rig, and not lines."""
+        return self.contact_model == "surface"
 
     @property
     def reading(self) -> str:

@@ -16,7 +16,7 @@ from pydantic_core import to_jsonable_python
 
 from lube.errors import StudyError, located, shown
 from lube.grid.gap import Gap
-from lube.grid.levels import SAME, level_index
+from lube.grid.levels import SAME, level_index, rolling
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import ON_REQUEST, STAGES, forerunners
@@ -179,8 +179,9 @@ class Study(StrictModel):
 
     @property
     def has_records(self) -> bool:
-        """Whether there are records: measured, or of the simulated rig, which runs with lines."""
-        return self.experiment.manifest is not None or self.line_spec.follows_rolling
+        """Whether there are records: measured, or of a simulated rig, with lines or surfaces."""
+        simulated = self.line_spec.follows_rolling or self.rig.has_surfaces
+        return self.experiment.manifest is not None or simulated
 
     @property
     def lubricant_values(self) -> list[dict]:
@@ -209,8 +210,14 @@ class Study(StrictModel):
 
     @property
     def compares_surfaces(self) -> bool:
-        """Whether records are compared with surfaces; a simulated rig runs with lines."""
-        return self.has_surfaces and self.conducts and self.experiment.manifest is not None
+        """Whether records are compared with surfaces; of a simulated rig, if it has surfaces."""
+        of_surfaces = self.experiment.manifest is not None or self.rig.has_surfaces
+        return self.has_surfaces and self.conducts and of_surfaces
+
+    @property
+    def rig_is_answered(self) -> bool:
+        """Whether the oil answers the surfaces of the simulated rig's rollers."""
+        return self.rig.has_surfaces and self.gap.is_answered
 
     @property
     def compares_lines_only(self) -> bool:
@@ -470,6 +477,8 @@ class Study(StrictModel):
                 f"experiment.thresholds: {shown(self.experiment.thresholds)} ohm"
             )
         simulated = self.experiment.manifest is None
+        if self.rig.has_surfaces:
+            self._check_rig_surfaces()
         if not (self.conducts or simulated):
             raise ValueError(
                 f"resistivity: got {INSULATOR} together with experiment.manifest, need a "
@@ -488,6 +497,21 @@ class Study(StrictModel):
                 f"{voltage:.3g} V across {largest:g} ohm in this circuit"
             )
         return self
+
+    def _check_rig_surfaces(self):
+        slips = rolling(self.slips), self.trace_points[0]["slide_to_roll_ratio"]
+        needed = {
+            "contact_model: surface or [line, surface]": self.has_surfaces,
+            "rollers of one radius: else other points of the surfaces meet in every turn": (
+                self.line_spec.points[0] == self.line_spec.points[1]
+            ),
+            "a slide-to-roll ratio of 0 in operating_grid and traces: with slip other points of "
+            "the surfaces meet at every step": not any(slips),
+            "rig.drift: 0": self.rig.drift == 0.0,
+        }
+        for what, is_so in needed.items():
+            if not is_so:
+                raise ValueError(f"rig.contact_model: got surface, need line, or {what}")
 
     @property
     def trace_points(self) -> list[dict]:
