@@ -128,10 +128,11 @@ def _records(study):
     if not study.conducts:
         return "none: the rollers do not conduct", []
     if not study.has("experiment"):
-        return "none: the simulated rig runs with lines", []
+        return "none: the simulated rig runs with lines, unless rig.contact_model is surface", []
     manifest = study.experiment.manifest
     if manifest is None:
-        return f"simulated, {count(study.rig.pairs, 'pair')} of rollers", []
+        surfaces = " with surfaces" if study.rig.has_surfaces else ""
+        return f"simulated, {count(study.rig.pairs, 'pair')} of rollers{surfaces}", []
     from lube.recordings.manifest import read_manifest
     from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 

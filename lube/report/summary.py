@@ -118,7 +118,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         deformed={model: _deformed(model, film, results, first) for model in contacts},
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[
-            # A simulated rig runs with lines.
+            # A simulated rig may run with lines.
             _trace(point, film, model, each, comparison if model in compared else None)
             for point in study.trace_points
             for model, each in contacts.items()

@@ -7,8 +7,8 @@ roughness, so their deviations are correlated. The resulting scatter of the figu
 estimated from the ensemble: each realisation in turn is left out and compared with the others as
 if it were the pair in the rig.
 
-Measured records are compared with contact of the surfaces too, if the study asks for it. A
-simulated rig runs with lines, so its records are compared with lines alone.
+Measured records are compared with contact of the surfaces too, if the study asks for it. Those of a
+simulated rig that runs with lines are compared with lines alone.
 """
 
 import itertools

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from lube.contact.rough_pair import drawn, roughness_batch
+from lube.contact.surface_revolution import revolution_contact
 from lube.grid.gap import Gap
 from lube.grid.operating_points import operating_points
 from lube.physics.electrical import divider_voltage, resistance_from_voltage
 from lube.rig import simulator as module
-from lube.rig.simulator import Revolution, drifting_rollers, simulated_revolutions
+from lube.rig.simulator import Revolution, drifting_rollers, simulated_revolutions, whole_points
 from lube.stages.contact import contact_statistics
 from lube.study.rig_settings import Rig
 
@@ -132,6 +133,31 @@ def test_its_contacts_are_those_of_the_contact_stage(finer, with_rig, rig_film, 
         touched[pair, number] += np.mean(revolution.contact > 0) / 2.0
     np.testing.assert_allclose(touched.ravel(), expected.values.ravel(), rtol=within, atol=2e-5)
     assert touched.max() > 0.01
+
+
+def test_surfaces_turn_as_they_were_drawn(finer, with_rig, points):
+    weak = finer.boundary_layer.model_copy(update={"shear_strength": 1e4})
+    several = with_rig(finer, pairs=2, revolutions=1.5, contact_model="surface")
+    several = several.model_copy(update={"boundary_layer": weak})
+    spec, drawn = several.line_spec, []
+    for number in several.rig_realisations:
+        seeds = (several.seed, number)
+        known = spec, several.rollers.length, points, several.boundary_layer, seeds
+        drawn.append(whole_points(revolution_contact(*known), spec))
+    assert np.any(drawn) and not np.array_equal(*drawn)
+    for pair, number, revolution in run(several, points):
+        whole, turn = drawn[pair][number], revolution.seed[3]
+        size = whole.size if turn == 0 else round(0.5 * whole.size)
+        np.testing.assert_array_equal(revolution.contact, whole[:size])
+        speed = points["entrainment_speed"][number].item()
+        turned = revolution.time_step * whole.size * speed
+        assert turned == pytest.approx(2.0 * np.pi * several.rollers.first.radius)
+
+
+def test_contact_is_at_least_one_whole_point(finer):
+    spec = finer.line_spec
+    lengths = spec.spacing * np.array([0.0, 1e-6, 0.6, 2.4, 2.6])
+    assert whole_points(lengths, spec).tolist() == [0, 1, 1, 2, 3]
 
 
 @pytest.mark.parametrize("deformation", ["none", "venner-1997"])

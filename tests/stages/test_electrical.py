@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from made import made
+from made import made, on_few_surfaces
 from studies import CONFIG
 
 from lube.contact.window_films import window_films
@@ -102,3 +102,42 @@ def test_measured_voltages_are_those_of_the_simulated_rig(found, study):
     assert found.rig_source.sel(rig="study") == "the study"
     assert "PCS" in found.rig_source.sel(rig="mtm-ecr").item()
     assert OWN_RIG in found.rig.values
+
+
+# A rig whose rollers have surfaces
+
+
+@pytest.fixture(scope="module")
+def of_surfaces(study):
+    # On a coarser grid, with so weak a layer that it breaks there.
+    changes = {
+        "rig": study.rig.model_copy(update={"contact_model": "surface"}),
+        "contact_model": ("line", "surface"),
+        "roughness": study.roughness.model_copy(update={"points": 60_000}),
+        "boundary_layer": study.boundary_layer.model_copy(update={"shear_strength": 1e4}),
+    }
+    kinds = ("lubricant", "film", "contact", "areal", "experiment", "surface_records")
+    with on_few_surfaces():
+        return made(study.model_copy(update=changes), (*kinds, "comparison", "electrical"))
+
+
+def test_surfaces_touch_more_often_than_lines_and_are_read_as_they_touch(of_surfaces):
+    surfaces, experiment = of_surfaces["electrical"], of_surfaces["experiment"]
+    lines = of_surfaces["contact"].breakthrough_probability_mean
+    lines = lines.isel(film_formula=0, slide_to_roll_ratio=0)
+    assert (surfaces.true_contact_share >= lines).all()
+    own, of_records = surfaces.true_contact_share.values, experiment.true_contact_share.values
+    np.testing.assert_allclose(own.ravel(), of_records)
+    seen = surfaces.true_contact_share > 0.01
+    read = surfaces.read_contact_share.sel(rig="threshold-counter", reading="threshold")
+    np.testing.assert_allclose(read, surfaces.true_contact_share, rtol=0.02, atol=1e-3)
+    assert surfaces.breakdown_ratio.isnull().all()
+    resistance = surfaces.closed_resistance.where(seen)
+    assert resistance.min() > 1e-4 and resistance.max() < 1.0
+    assert ((surfaces.discharge_probability >= 0.0) & (surfaces.discharge_probability <= 1.0)).all()
+
+
+def test_the_surface_explains_the_records_of_surfaces_and_the_line_does_not(of_surfaces):
+    comparison = of_surfaces["comparison"].isel(film_formula=0)
+    within = comparison.within_prediction.mean("record")
+    assert within.sel(contact_model="surface") >= 0.8 > within.sel(contact_model="line")

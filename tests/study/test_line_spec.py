@@ -183,3 +183,17 @@ def test_a_mistake_is_refused_in_one_line(paper_with, key, value, needed):
 def test_a_drift_of_lines_that_are_not_gaussian_is_refused(paper_with):
     message = refusal(paper_with(("rig.drift", 0.1), ("roughness.kurtosis", 4)))
     assert "rig.drift: got 0.1, need 0 for a simulated rig with roughness that is" in message
+
+
+def test_a_rig_with_surfaces_is_refused_what_its_surfaces_cannot_do(paper_with):
+    surfaces = (("rig.contact_model", "surface"), ("contact_model", ["line", "surface"]))
+    load_study(paper_with(*surfaces))
+    slip = ("operating_grid.slide_to_roll_ratio", [0.1, 0.2])
+    for change, needed in (
+        (("contact_model", ["line"]), "need line, or contact_model: surface or [line, surface]"),
+        (("rollers.second.radius", "40 mm"), "need line, or rollers of one radius"),
+        (slip, "need line, or a slide-to-roll ratio of 0 in operating_grid and traces"),
+        (("rig.drift", 0.1), "need line, or rig.drift: 0"),
+    ):
+        message = refusal(paper_with(*surfaces, change))
+        assert f"rig.contact_model: got surface, {needed}" in message
