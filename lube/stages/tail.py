@@ -8,7 +8,7 @@ from lube.contact.windows import FLATTENED, ContactWindows, study_windows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
-from lube.grid.operating_points import surface_speeds
+from lube.grid.operating_points import over_contact_models, surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, mean_interval
@@ -108,9 +108,7 @@ def _by_model(study, film, lines, areal):
     known = _on_surfaces(study, film["entrainment_speed"], areal.drop_attrs())
     surfaces = {name: known[name].transpose(*lines[name].dims) for name in lines}
     tables = {"line": lines, "surface": lines.assign(surfaces)}
-    models = list(study.contact_model)
-    levels = xr.DataArray(models, dims="contact_model", name="contact_model")
-    found = xr.concat([tables[name] for name in models], levels, join="exact")
+    found = over_contact_models("tail", {name: tables[name] for name in study.contact_model})
     if study.gap.is_answered:
         found = found.assign(surface_rms_deformation=areal["surface_rms_deformation"])
     deviation = _in_pure_rolling(areal["pair_deviation"])
@@ -164,12 +162,22 @@ def _by_groups(found, passages, revolution):
     sampled one by one, this gives 2 to 11 % too many of them where P is below 0.001; where it is
     greater, nearly all pairs have a breakthrough anyway.
     """
-    name = "breakthrough_probability"
-    with np.errstate(divide="ignore"):  # where contact is always seen
-        groups = {end: -passages * np.log1p(-found[f"{name}{end}"]) for end in LIMITS}
-    shares = {f"touching_pair_share{end}": -np.expm1(-each) for end, each in groups.items()}
-    never = 1.0 - found[name]
-    return shares | {"first_breakthrough_time": revolution * never * _wait(groups[""])}
+    groups, never = _seen_groups(found, passages), 1.0 - found["breakthrough_probability"]
+    times = {"first_breakthrough_time": revolution * never * _wait(groups[""])}
+    return _pair_shares(groups) | times
+
+
+def _seen_groups(found, windows):
+    """Find how many groups of breakthroughs are expected in some independent windows."""
+    with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
+        return {
+            end: -windows * np.log1p(-found[f"breakthrough_probability{end}"]) for end in LIMITS
+        }
+
+
+def _pair_shares(groups):
+    """Fraction of pairs with any of the groups expected in a revolution."""
+    return {f"touching_pair_share{end}": -np.expm1(-each) for end, each in groups.items()}
 
 
 def pair_probabilities(
@@ -361,13 +369,8 @@ def _touching_pairs(groups, of_pairs, windows):
     are counted instead.
     """
     found = pair_limits(of_pairs.assign(groups=groups))
-    shares = {}
-    with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
-        for end in LIMITS:
-            seen = -windows * np.log1p(-found[f"breakthrough_probability{end}"])
-            expected = np.maximum(found[f"groups{end}"], seen)
-            shares[f"touching_pair_share{end}"] = -np.expm1(-expected)
-    return shares
+    seen = _seen_groups(found, windows)
+    return _pair_shares({end: np.maximum(found[f"groups{end}"], seen[end]) for end in LIMITS})
 
 
 def _first_breakthrough(runs, points, revolution):
