@@ -100,11 +100,12 @@ def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) ->
         ``fitted_layer_strength_coverage`` as in `fit_alpha`. Contact of the surface does not tell
         the strength, so by its curves all values are NaN, all limits 0 and infinity.
     """
+    name = "fitted_layer_strength"
     if curves.contact_model == "surface":
-        return _undetermined("fitted_layer_strength", contact, comparison)
+        unknown = xr.full_like(comparison["lambda_ratio"], np.nan).expand_dims("factor")
+        return _fits(name, np.ones(1), 1.0, unknown, contact, comparison, "surface")
     tried, logits = strength_logits(curves, contact, comparison)
-    study = study_strength(contact)
-    return _fits("fitted_layer_strength", tried, study, logits, contact, comparison)
+    return _fits(name, tried, study_strength(contact), logits, contact, comparison)
 
 
 def strength_logits(
@@ -205,15 +206,6 @@ def _between_nodes(films, factor):
     curve = scipy.interpolate.CubicSpline(nodes, np.log(films[known]))
     beyond = np.maximum(np.log(factor) - last, 0.0)
     return np.exp(curve(np.minimum(np.log(factor), last)) + beyond * curve(last, 1))
-
-
-def _undetermined(name, contact, comparison):
-    """Fits of a factor that the records do not determine."""
-    oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
-    values = [np.full((oils.size, formulas.size), each) for each in (np.nan, 0.0, np.inf)]
-    variables = values_with_limits(name, values) | {f"{name}_coverage": values[0]}
-    variables |= {"fitted_lubricant": oils, "film_formula": formulas}
-    return xr.Dataset(with_dims("gauge", variables))
 
 
 def _fits(name, tried, truth, logits, contact, comparison, contact_model="line"):
