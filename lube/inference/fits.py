@@ -18,6 +18,7 @@ from lube.inference.record_curves import RecordCurves, realised_shares
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
+from lube.study.rollers import BoundaryLayer
 from lube.types import Array
 
 Data = xr.Dataset
@@ -142,20 +143,20 @@ def strength_logits(
     return tried, known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
 
 
-def study_strength(contact: Data) -> float:
+def study_strength(layer: Data | BoundaryLayer) -> float:
     """Strength of the study's boundary layer, its only property on which the model depends.
 
     Parameters
     ----------
-    contact : xarray.Dataset
-        A ``contact`` dataset.
+    layer : xarray.Dataset or BoundaryLayer
+        A ``contact`` dataset, which has its properties, or the layer itself.
 
     Returns
     -------
     float
         tau0 / h_c, Pa/m.
     """
-    return contact["shear_strength"].item() / contact["critical_thickness"].item()
+    return float(layer.shear_strength / layer.critical_thickness)
 
 
 def _lambda_ratios(comparison, factor):

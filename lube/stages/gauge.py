@@ -49,9 +49,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
             curves = by_line(records)
         inferred.append(_inferred(curves, contact, records))
     by_model = xr.concat(inferred, comparison["contact_model"], join="exact")
-    layer = study.boundary_layer
-    strength = layer.shear_strength / layer.critical_thickness
-    return _with_records(by_model, strength, comparison)
+    return _with_records(by_model, study_strength(study.boundary_layer), comparison)
 
 
 def _of_surfaces(comparison, surfaces):
