@@ -8,7 +8,7 @@ from lube.contact.windows import FLATTENED, ContactWindows, study_windows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
-from lube.grid.operating_points import over_contact_models, surface_speeds
+from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, mean_interval
@@ -108,7 +108,9 @@ def _by_model(study, film, lines, areal):
     known = _on_surfaces(study, film["entrainment_speed"], areal.drop_attrs())
     surfaces = {name: known[name].transpose(*lines[name].dims) for name in lines}
     tables = {"line": lines, "surface": lines.assign(surfaces)}
-    found = over_contact_models("tail", {name: tables[name] for name in study.contact_model})
+    models = list(study.contact_model)
+    levels = xr.DataArray(models, dims="contact_model", name="contact_model")
+    found = xr.concat([tables[name] for name in models], levels, join="exact")
     if study.gap.is_answered:
         found = found.assign(surface_rms_deformation=areal["surface_rms_deformation"])
     deviation = _in_pure_rolling(areal["pair_deviation"])
