@@ -193,9 +193,7 @@ def shortest_waves(spec: LineSpecLike) -> Pair:
     """Shortest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
     # A cut through a ridge along one side, over its reach along the other.
     waves = [
-        2.0
-        * math.pi
-        / line.q_max
+        line.shortest_wavelength
         * line.lay_ratio
         / np.array(extents(line.lay_ratio, line.lay_angle))
         for line in spec.lines
