@@ -45,30 +45,6 @@ NOT_POINTS = ("None", "none", "", " ", "_", "|")
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
-_STYLE = {
-    "figure.constrained_layout.use": True,
-    "figure.dpi": 110,
-    "savefig.dpi": 220,
-    "font.size": 9,
-    "axes.titlesize": 9,
-    "axes.titlelocation": "left",
-    "axes.labelsize": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#E4E4E4",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "legend.fontsize": 8,
-    "legend.frameon": False,
-    "lines.linewidth": 1.4,
-    "lines.markersize": 4.5,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "pdf.fonttype": 42,
-    "agg.path.chunksize": 10000,  # long traces are drawn in pieces
-}
-
 # Coordinates of an operating point besides force, speed and temperature, with the words before
 # their values.
 _OTHER_COORDINATES = {
@@ -90,7 +66,7 @@ def use_style() -> None:
     Parameters of Matplotlib that the style does not name keep the user's values; the workflow
     executes notebooks with Matplotlib's defaults for these.
     """
-    plt.rcParams.update(_STYLE)
+    plt.style.use("lube.plots")
 
 
 def in_units(array: xr.DataArray, units: str) -> xr.DataArray:

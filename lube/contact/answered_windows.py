@@ -5,6 +5,7 @@ They are sums over the waves of the lines, which are taken together in narrow ba
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 
@@ -25,9 +26,7 @@ def _nodes_of(part, before, answers, spacing):
     return nodes - part.start, [answer.at_points(before - nodes, spacing) for answer in answers]
 
 
-def rms_along(
-    spec, points: int, before: int, answers: tuple[Answer, Answer], bands: list | None = None
-) -> Array:
+def rms_along(spec, points: int, before: int, answers: tuple[Answer, Answer]) -> Array:
     """Rms height of the roughness in the gap along a contact window.
 
     Parameters
@@ -36,8 +35,6 @@ def rms_along(
         As in `answered_windows`.
     points : int
         Points of the window.
-    bands : list, optional
-        Powers and filters of both lines' waves, where they are known already.
 
     Returns
     -------
@@ -45,7 +42,7 @@ def rms_along(
         Over that of the lines as drawn, shape (points,).
     """
     rms, _ = sum_of_lines(spec, 1)
-    bands = bands or [_bands(spec, roller, one, points) for roller, one in enumerate(answers)]
+    bands = [_bands(spec, roller, one, points) for roller, one in enumerate(answers)]
     nodes, shapes = _nodes_of(slice(0, points), before, answers, spec.spacing)
 
     def added_by(roller):
@@ -57,6 +54,7 @@ def rms_along(
     return np.sqrt(1.0 + np.interp(np.arange(points), nodes, added) / rms**2)
 
 
+@lru_cache(maxsize=4)
 def answered_windows(
     spec, points: int, before: int, answers: tuple[Answer, Answer]
 ) -> Callable[[Array], UnevenWindow]:
@@ -83,7 +81,7 @@ def answered_windows(
     shift = answers[0].shift(spec.spacing)
     rms, _ = sum_of_lines(spec, 1)
     bands = [_bands(spec, roller, one, points) for roller, one in enumerate(answers)]
-    ratio = rms_along(spec, points, before, answers, bands)
+    ratio = rms_along(spec, points, before, answers)
     reach = math.ceil(spec.longest_wavelength / spec.spacing)
     last = (max(points, reach) >> shift) + 2
     lags = np.arange(last + 1) << shift

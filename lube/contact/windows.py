@@ -83,7 +83,7 @@ class ContactWindows:
         gap: Gap = PLAIN,
         weaker: Values = 1.0,
     ) -> None:
-        self._grid, self._gap, self._places, self._alike = grid, gap, {}, {}
+        self._grid, self._gap, self._places = grid, gap, {}
         names = ["film_thickness", "contact_half_width"]
         # If contact depends on more than film and width, points are distinguished by Moes' numbers
         # and, with slip, by the answer to the longest wave.
@@ -312,16 +312,10 @@ class ContactWindows:
         if key not in self._places:
             window, make = self._window([point]), UnevenWindow
             if self._gap.is_answered:
-                make = self._answered(spec, window, self._answers[point])
+                answers = tuple(self._answers[point])
+                make = answered_windows(spec, window.film.size, window.before, answers)
             self._places[key] = make(window.film[0].astype(float))
         return self._places[key]
-
-    def _answered(self, spec, window, answers):
-        """Maker of contact windows, the same for all films to which the oil answers alike."""
-        key = window.before, window.film.size, *answers
-        if key not in self._alike:
-            self._alike[key] = answered_windows(spec, window.film.size, window.before, answers)
-        return self._alike[key]
 
     def _in_contact(self, pair):
         """Yield the lines, flattened if need be, and the points at which they are the same."""

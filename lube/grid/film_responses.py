@@ -9,7 +9,7 @@ from lube.ehl.line_contact import ConvergenceError, FilmProfile, one_blas_thread
 from lube.ehl.response import WaveResponse, at_wavelengths
 from lube.grid.film_profiles import film_positions, six_digits
 from lube.grid.operating_points import surface_speeds
-from lube.surfaces.lay import cosine_and_sine
+from lube.surfaces.lay import stretched
 from lube.surfaces.synthetic import amplitudes_across_lay, wave_amplitudes
 from lube.threads import on_threads
 from lube.types import Array, Datasets, Pair
@@ -163,9 +163,7 @@ def _surface_heights(spec, angles, wavelengths):
         length, power = line_waves(spec, roller, amplitudes_across_lay)
         power, edges = np.histogram(-np.log(length), LENGTHS, weights=power)
         # The waves of the isotropic surface run in all directions; see `lube.surfaces.lay`.
-        across_lay, ridges = np.cos(psi), np.sin(psi) / line.lay_ratio
-        cosine, sine = cosine_and_sine(line.lay_angle)
-        along, across = ridges * cosine - across_lay * sine, ridges * sine + across_lay * cosine
+        along, across = stretched(1.0, psi, line.lay_ratio, line.lay_angle)
         angle = np.degrees(np.arctan2(np.abs(across), np.abs(along)))
         places = 0.5 * (edges[1:] + edges[:-1]) + np.log(np.hypot(along, across))[:, None]
         weights = _weights(angle, angles), _weights(places, -np.log(wavelengths))

@@ -10,7 +10,7 @@ import xarray as xr
 from lube.errors import DataError
 from lube.grid.gap import Gap
 from lube.grid.levels import rolling
-from lube.schema import CONTACT_DIMS, EXPERIMENT_DIMS, OPERATING_DIMS, POINT_DIMS
+from lube.schema import CONTACT_DIMS, EXPERIMENT_DIMS, OPERATING_DIMS, POINT_DIMS, model_dependent
 
 log = logging.getLogger(__name__)
 
@@ -117,6 +117,28 @@ def by_contact_model(dataset: xr.Dataset) -> xr.Dataset:
     if "contact_model" in dataset.dims:
         return dataset
     return dataset.expand_dims(contact_model=["line"])
+
+
+def over_contact_models(kind: str, tables: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """Join datasets of one kind, each by another contact model.
+
+    Parameters
+    ----------
+    kind : str
+        A key of `lube.schema.FILES`.
+    tables : mapping of str to xarray.Dataset
+        Datasets by their contact models. What does not depend on the model is the same in all.
+
+    Returns
+    -------
+    xarray.Dataset
+        What depends on the contact model is over contact_model, in the order of the tables.
+    """
+    first = next(iter(tables.values()))
+    names = [name for name in model_dependent(kind) if name in first]
+    models = xr.DataArray(list(tables), dims="contact_model", name="contact_model")
+    by_model = xr.concat([table[names] for table in tables.values()], models, join="exact")
+    return first.drop_vars(names).merge(by_model)
 
 
 def known_films(film: xr.Dataset, gap: Gap) -> xr.DataArray:

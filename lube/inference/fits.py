@@ -18,6 +18,7 @@ from lube.inference.record_curves import RecordCurves, realised_shares
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
+from lube.study.rollers import BoundaryLayer
 from lube.types import Array
 
 Data = xr.Dataset
@@ -100,11 +101,12 @@ def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) ->
         ``fitted_layer_strength_coverage`` as in `fit_alpha`. Contact of the surface does not tell
         the strength, so by its curves all values are NaN, all limits 0 and infinity.
     """
+    name = "fitted_layer_strength"
     if curves.contact_model == "surface":
-        return _undetermined("fitted_layer_strength", contact, comparison)
+        unknown = xr.full_like(comparison["lambda_ratio"], np.nan).expand_dims("factor")
+        return _fits(name, np.ones(1), 1.0, unknown, contact, comparison, "surface")
     tried, logits = strength_logits(curves, contact, comparison)
-    study = study_strength(contact)
-    return _fits("fitted_layer_strength", tried, study, logits, contact, comparison)
+    return _fits(name, tried, study_strength(contact), logits, contact, comparison)
 
 
 def strength_logits(
@@ -141,20 +143,20 @@ def strength_logits(
     return tried, known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
 
 
-def study_strength(contact: Data) -> float:
+def study_strength(layer: Data | BoundaryLayer) -> float:
     """Strength of the study's boundary layer, its only property on which the model depends.
 
     Parameters
     ----------
-    contact : xarray.Dataset
-        A ``contact`` dataset.
+    layer : xarray.Dataset or BoundaryLayer
+        A ``contact`` dataset, which has its properties, or the layer itself.
 
     Returns
     -------
     float
         tau0 / h_c, Pa/m.
     """
-    return contact["shear_strength"].item() / contact["critical_thickness"].item()
+    return float(layer.shear_strength / layer.critical_thickness)
 
 
 def _lambda_ratios(comparison, factor):
@@ -205,15 +207,6 @@ def _between_nodes(films, factor):
     curve = scipy.interpolate.CubicSpline(nodes, np.log(films[known]))
     beyond = np.maximum(np.log(factor) - last, 0.0)
     return np.exp(curve(np.minimum(np.log(factor), last)) + beyond * curve(last, 1))
-
-
-def _undetermined(name, contact, comparison):
-    """Fits of a factor that the records do not determine."""
-    oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
-    values = [np.full((oils.size, formulas.size), each) for each in (np.nan, 0.0, np.inf)]
-    variables = values_with_limits(name, values) | {f"{name}_coverage": values[0]}
-    variables |= {"fitted_lubricant": oils, "film_formula": formulas}
-    return xr.Dataset(with_dims("gauge", variables))
 
 
 def _fits(name, tried, truth, logits, contact, comparison, contact_model="line"):

@@ -294,8 +294,7 @@ def _through(films, mean, sample_size):
     """
     known = (mean > _LEAST) & (mean < 1.0)
     if np.count_nonzero(known) < 2:
-        nothing = np.zeros(0)
-        return Curve(nothing, nothing, nothing)
+        return Curve(*np.zeros((3, 0)))
     films, mean = films[known], mean[known]
     places = np.linspace(0.0, 1.0, FINER * (films.size - 1) + 1)
     finer = np.exp(np.interp(places, np.linspace(0.0, 1.0, films.size), np.log(films)))

@@ -33,11 +33,7 @@ _SLIP = "slide_to_roll_ratio"
 
 
 def surfaces_at_records(
-    study: Study,
-    experiment: xr.Dataset,
-    films: xr.Dataset,
-    inputs: Datasets,
-    threads: int | None = None,
+    study: Study, films: xr.Dataset, inputs: Datasets, threads: int | None = None
 ) -> xr.Dataset:
     """Probability of contact of the surfaces at the film of each record, and at other films.
 
@@ -45,13 +41,12 @@ def surfaces_at_records(
     ----------
     study : Study
         Its surfaces, boundary layer, films and seed.
-    experiment : xarray.Dataset
-        An ``experiment`` dataset.
     films : xarray.Dataset
-        Films at its records, from `lube.inference.at_records.study_films_at_records`.
+        Films at the records, from `lube.inference.at_records.study_films_at_records`.
     inputs : dict of str to xarray.Dataset
-        The study's ``film`` and ``areal``, and its ``surface_response`` if the oil answers the
-        surfaces. Where they contain the film of a record, its probability is taken from them.
+        The study's ``experiment``, ``film`` and ``areal``, and its ``surface_response`` if the oil
+        answers the surfaces. Where these contain the film of a record, its probability is taken
+        from them.
     threads : int, optional
         Threads that share the work; they do not change the results.
 
@@ -66,7 +61,7 @@ def surfaces_at_records(
         the oil deforms the surfaces, stay those of the record. And ``scatter_ratio`` from
         `lube.inference.surface_scatter.surface_scatter`.
     """
-    first = films.isel(film_formula=0)
+    experiment, first = inputs["experiment"], films.isel(film_formula=0)
     grid, known = _on_grid(study, inputs)
     rows = {key: row for row, key in enumerate(study_windows(study, grid).keys)}
     row_of = np.array([rows.get(key, -1) for key in study_windows(study, first).keys], int)
@@ -96,6 +91,7 @@ def surfaces_at_records(
         "scatter_ratio": scatter,
         **values_with_limits("curve_probability", curves[:3]),
         "curve_sample_size": curves[3],
+        "record": experiment["record"].values,
     }
     return xr.Dataset(with_dims("surface_records", found))
 

@@ -107,11 +107,6 @@ def regime(moes_load: Values, moes_material: Values) -> np.ndarray:
     >>> regime(np.array([0.2, 1.0, 50.0]), 8.0).tolist()
     [0, 1, 3]
     """
-    rigid_iso, rigid_piezo, elastic_iso, elastic_piezo = moes_asymptotes(moes_load, moes_material)
-    isoviscous = np.maximum(rigid_iso, elastic_iso)
-    piezoviscous = np.minimum(rigid_piezo, elastic_piezo)
-    return np.where(
-        isoviscous >= piezoviscous,
-        np.where(rigid_iso >= elastic_iso, 0, 2),
-        np.where(rigid_piezo <= elastic_piezo, 1, 3),
-    )
+    rigid_iso, rigid_piezo, elastic_iso, _ = moes_asymptotes(moes_load, moes_material)
+    film = asymptotic_film(moes_load, moes_material)  # exactly one of them
+    return np.select([film == rigid_iso, film == elastic_iso, film == rigid_piezo], [0, 2, 1], 3)

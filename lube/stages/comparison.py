@@ -23,10 +23,11 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.contact.surface_strip import SURFACES
+from lube.grid.operating_points import over_contact_models
 from lube.inference.at_records import model_at_records, study_films_at_records
 from lube.inference.study_shares import levels_named, log_lines
 from lube.inference.surface_scatter import surface_prediction
-from lube.schema import AT_RECORDS, LIMITS, label, model_dependent, values_with_limits, with_dims
+from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
 from lube.statistics.confidence import mean_or_nan, probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size
@@ -101,13 +102,10 @@ def compare(
     notes = {"missing": _missing(first, levels), "remarks": _contradictions(first)}
     for lines in notes.values():
         log_lines(log, lines)
-    first = first.assign_attrs({name: "\n".join(lines) for name, lines in notes.items()})
     if surfaces is not None:
-        names = model_dependent("comparison")
-        models = xr.DataArray(list(contact_models), dims="contact_model", name="contact_model")
-        by_model = [tables[contact_model][names] for contact_model in contact_models]
-        first = first.drop_vars(names).merge(xr.concat(by_model, models, join="exact"))
-    return label(first, "comparison")
+        first = over_contact_models("comparison", {name: tables[name] for name in contact_models})
+    texts = {name: "\n".join(lines) for name, lines in notes.items()}
+    return label(first.assign_attrs(texts), "comparison")
 
 
 def _table(model, experiment):

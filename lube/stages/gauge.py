@@ -42,16 +42,14 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     inferred = []
     for model in comparison["contact_model"].values:
         records = comparison.sel(contact_model=model, drop=True)
-        if model == "line":
-            inferred.append(_inferred(by_line(records), contact, records))
-        else:
+        if model == "surface":
             records = _of_surfaces(records, inputs["surface_records"])
             curves = surface_curves(inputs["surface_records"], records, study.gap.has_shape)
-            inferred.append(_inferred(curves, contact, records))
+        else:
+            curves = by_line(records)
+        inferred.append(_inferred(curves, contact, records))
     by_model = xr.concat(inferred, comparison["contact_model"], join="exact")
-    layer = study.boundary_layer
-    strength = layer.shear_strength / layer.critical_thickness
-    return _with_records(by_model, strength, comparison)
+    return _with_records(by_model, study_strength(study.boundary_layer), comparison)
 
 
 def _of_surfaces(comparison, surfaces):

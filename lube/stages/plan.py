@@ -8,9 +8,9 @@ from lube.contact.surface_strip import SURFACES
 from lube.grid.film_profiles import six_digits
 from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
-from lube.grid.operating_points import at_slip
+from lube.grid.operating_points import at_slip, over_contact_models
 from lube.inference import planning
-from lube.schema import POINT_DIMS, label, model_dependent
+from lube.schema import POINT_DIMS, label
 from lube.sensitivity.findings import LEFT, narrowing
 from lube.sensitivity.samples import SEED
 from lube.study.rig_settings import OWN_RIG
@@ -49,7 +49,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         unknown["half_width_assumed"] = _assumed(inputs["sensitivity"], study)
     coordinates = {name: film[name].values for name in POINT_DIMS}
     coordinates |= {"quantity": list(planning.QUANTITIES), "turns": list(TURNS)}
-    sizes, tables = [film.sizes[name] for name in POINT_DIMS], []
+    sizes, tables = [film.sizes[name] for name in POINT_DIMS], {}
     for model in study.contact_model:
         of_model = _of_lines if model == "line" else _of_surfaces
         found, size, ratios, read, ensemble = of_model(study, inputs, film, slip, reading, threads)
@@ -67,13 +67,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
             widths = planning.half_widths(found, by_coefficient, error, ensemble)
             widths = _digits(widths.reshape(len(planning.QUANTITIES), len(TURNS), *sizes))
             table[name] = ("quantity", "turns", *POINT_DIMS), widths
-        tables.append(xr.Dataset(table | {"best_threshold": threshold}, coordinates))
-    dataset = tables[0]
-    if study.has_surfaces:
-        names = [name for name in model_dependent("plan") if name in dataset]
-        models = xr.DataArray(list(study.contact_model), dims="contact_model", name="contact_model")
-        by_model = xr.concat([table[names] for table in tables], models, join="exact")
-        dataset = dataset.drop_vars(names).merge(by_model)
+        tables[model] = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
+    dataset = over_contact_models("plan", tables) if study.has_surfaces else tables["line"]
     if "sensitivity" in inputs:
         factors = inputs["sensitivity"]["factor"].values.tolist()
         if names := [name for name in factors if name not in (*CHOICES, SEED)]:

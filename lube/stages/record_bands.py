@@ -4,16 +4,15 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.contact.ensemble import windows_in
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import six_digits
 from lube.grid.levels import rolling
 from lube.grid.operating_points import by_contact_model
+from lube.inference.record_curves import realised_shares
 from lube.schema import LIMITS, POINT_DIMS, label
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.predictor import Predictor
 from lube.statistics.confidence import CONFIDENCE
-from lube.statistics.sample_size import effective_sample_size
 from lube.study.study import Study
 from lube.types import Datasets
 
@@ -82,8 +81,7 @@ def _shares(mean, trials, place):
 
 def _trials(comparison, surfaces):
     """Count the independent trials that one pair's record is worth, by contact model."""
-    windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
-    size = effective_sample_size(comparison["breakthrough_probability"].values, windows)
+    _, size = realised_shares(comparison)
     found = {"line": size / comparison["scatter_ratio"].values}
     if surfaces is not None:
         first = surfaces.isel(film_formula=0)

@@ -23,7 +23,5 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         The ``surface_records`` file of `lube.schema`, by
         `lube.inference.surface_records.surfaces_at_records`.
     """
-    experiment = inputs["experiment"]
-    films = study_films_at_records(study, experiment)
-    found = surfaces_at_records(study, experiment, films, inputs, threads)
-    return label(found.assign_coords(record=experiment["record"].values), "surface_records")
+    films = study_films_at_records(study, inputs["experiment"])
+    return label(surfaces_at_records(study, films, inputs, threads), "surface_records")

@@ -164,12 +164,22 @@ def _by_groups(found, passages, revolution):
     sampled one by one, this gives 2 to 11 % too many of them where P is below 0.001; where it is
     greater, nearly all pairs have a breakthrough anyway.
     """
-    name = "breakthrough_probability"
-    with np.errstate(divide="ignore"):  # where contact is always seen
-        groups = {end: -passages * np.log1p(-found[f"{name}{end}"]) for end in LIMITS}
-    shares = {f"touching_pair_share{end}": -np.expm1(-each) for end, each in groups.items()}
-    never = 1.0 - found[name]
-    return shares | {"first_breakthrough_time": revolution * never * _wait(groups[""])}
+    groups, never = _seen_groups(found, passages), 1.0 - found["breakthrough_probability"]
+    times = {"first_breakthrough_time": revolution * never * _wait(groups[""])}
+    return _pair_shares(groups) | times
+
+
+def _seen_groups(found, windows):
+    """Find how many groups of breakthroughs are expected in some independent windows."""
+    with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
+        return {
+            end: -windows * np.log1p(-found[f"breakthrough_probability{end}"]) for end in LIMITS
+        }
+
+
+def _pair_shares(groups):
+    """Fraction of pairs with any of the groups expected in a revolution."""
+    return {f"touching_pair_share{end}": -np.expm1(-each) for end, each in groups.items()}
 
 
 def pair_probabilities(
@@ -361,13 +371,8 @@ def _touching_pairs(groups, of_pairs, windows):
     are counted instead.
     """
     found = pair_limits(of_pairs.assign(groups=groups))
-    shares = {}
-    with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
-        for end in LIMITS:
-            seen = -windows * np.log1p(-found[f"breakthrough_probability{end}"])
-            expected = np.maximum(found[f"groups{end}"], seen)
-            shares[f"touching_pair_share{end}"] = -np.expm1(-expected)
-    return shares
+    seen = _seen_groups(found, windows)
+    return _pair_shares({end: np.maximum(found[f"groups{end}"], seen[end]) for end in LIMITS})
 
 
 def _first_breakthrough(runs, points, revolution):

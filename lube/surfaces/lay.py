@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from lube.types import Array
+from lube.types import Array, Pair, Values
 
 DIRECTIONS = 64
 """Number of directions in a quarter of the plane of wave vectors."""
@@ -112,6 +112,28 @@ def unstretched(along: Array, across: Array, ratio: float, angle: float) -> Arra
     cosine, sine = cosine_and_sine(angle)
     ridges, across_lay = along * cosine + across * sine, across * cosine - along * sine
     return np.hypot(across_lay, ratio * ridges)
+
+
+def stretched(wavenumber: Values, direction: Array, ratio: float, angle: float) -> Pair:
+    """Waves that the isotropic surface's waves become, the inverse of `unstretched`.
+
+    Parameters
+    ----------
+    wavenumber : float or numpy.ndarray
+        Wavenumber on the isotropic surface, any unit.
+    direction : numpy.ndarray
+        Angle there between the direction of the wave and that across the lay, rad.
+    ratio, angle
+        As in `unstretched`.
+
+    Returns
+    -------
+    along, across : numpy.ndarray
+        Wavenumbers along rolling and along the rollers, in the same unit.
+    """
+    across_lay, ridges = wavenumber * np.cos(direction), wavenumber * np.sin(direction) / ratio
+    cosine, sine = cosine_and_sine(angle)
+    return ridges * cosine - across_lay * sine, ridges * sine + across_lay * cosine
 
 
 def extents(ratio: float, angle: float) -> tuple[float, float]:

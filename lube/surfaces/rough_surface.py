@@ -20,7 +20,7 @@ import numpy as np
 import scipy.fft
 
 from lube.errors import DataError
-from lube.surfaces.lay import cosine_and_sine, extents, unstretched
+from lube.surfaces.lay import extents, stretched, unstretched
 from lube.surfaces.synthetic import LineSpecLike, amplitudes_across_lay
 from lube.types import Array, Pair
 
@@ -193,9 +193,7 @@ def shortest_waves(spec: LineSpecLike) -> Pair:
     """Shortest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
     # A cut through a ridge along one side, over its reach along the other.
     waves = [
-        2.0
-        * math.pi
-        / line.q_max
+        line.shortest_wavelength
         * line.lay_ratio
         / np.array(extents(line.lay_ratio, line.lay_angle))
         for line in spec.lines
@@ -345,9 +343,7 @@ def surface_waves(spec: LineSpecLike, roller: int) -> tuple[Array, Array, Array]
     number = np.sqrt(np.bincount(classes, power * number**2)[some] / powers[some])
     wavenumber = 2.0 * np.pi / (spec.points[roller] * spec.spacing) * number[:, None]
     psi = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
-    across_lay, ridges = wavenumber * np.cos(psi), wavenumber * np.sin(psi) / line.lay_ratio
-    cosine, sine = cosine_and_sine(line.lay_angle)
-    along, across = ridges * cosine - across_lay * sine, ridges * sine + across_lay * cosine
+    along, across = stretched(wavenumber, psi, line.lay_ratio, line.lay_angle)
     sign, power = np.where(along < 0.0, -1.0, 1.0), np.broadcast_to(powers[some, None], along.shape)
     return (sign * along).ravel(), (sign * across).ravel(), power.ravel() / DIRECTIONS
 

@@ -7,6 +7,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import rcParams
 from matplotlib.image import imread, imsave
 from refusals import one_line
 from unlike_studies import STUDIES
@@ -210,7 +211,8 @@ def test_figures_are_compared_but_for_their_stamps(results, tmp_path):
 
 
 def test_the_strip_is_that_of_the_stamp():
-    height = plots._STAMP_STRIP * plots._STYLE["savefig.dpi"]
+    plots.use_style()
+    height = plots._STAMP_STRIP * rcParams["savefig.dpi"]
     assert height <= STAMP_STRIP < height + 1.0
 
 

@@ -34,7 +34,7 @@ def at_records(study, inputs, force, temperature=40.0):
     """Surfaces at records of some forces."""
     experiment = experiment_of(np.full(len(force), 0.5), np.array(force), 100.0, temperature)
     films = study_films_at_records(study, experiment)
-    found = surfaces_at_records(study, experiment, films, inputs, 2)
+    found = surfaces_at_records(study, films, inputs | {"experiment": experiment}, 2)
     return films.isel(film_formula=0), found.isel(film_formula=0)
 
 
@@ -135,7 +135,8 @@ def test_an_unknown_film_has_no_contact_and_no_curve_its_neighbours_have(plain):
     experiment = experiment_of([0.5, 0.5], np.array([900.0, 1600.0]), 100.0, 40.0)
     films = study_films_at_records(study, experiment)
     films["film_thickness"][:, 0] = films["lambda_ratio"][:, 0] = np.nan
-    share = surfaces_at_records(study, experiment, films, inputs, 2)["breakthrough_probability"]
+    found = surfaces_at_records(study, films, inputs | {"experiment": experiment}, 2)
+    share = found["breakthrough_probability"]
     assert share[:, 0].isnull().all() and (share[:, 1] > 0.0).all()
 
 
@@ -146,7 +147,7 @@ def test_other_film_formulas_are_read_from_the_curves(busy_study, few_surfaces, 
     inputs = made(study, ("lubricant", "film", "areal"))
     experiment = experiment_of([0.5, 0.5], np.array([400.0, 1600.0]), 100.0, 40.0)
     films = study_films_at_records(study, experiment)
-    found = surfaces_at_records(study, experiment, films, inputs, 2)
+    found = surfaces_at_records(study, films, inputs | {"experiment": experiment}, 2)
     known = inputs["areal"].squeeze().transpose("film_formula", "force")
     name = "breakthrough_probability"
     errors = [0.5 * (each[f"{name}_upper"] - each[name]).values for each in (found, known)]
