@@ -194,7 +194,7 @@ def passing_contacts(
     """
     strip = film, shapes, has_edges
     count, width = summits.column.size, film.size
-    areas, touching = np.zeros(count), np.empty(count, np.int32)
+    columns, areas, sums = np.empty(count, np.int32), np.zeros(count), np.zeros(count)
     margin = 0.5
     if has_edges:
         for number in range(count):
@@ -202,36 +202,28 @@ def passing_contacts(
             margin = max(margin, 0.5 + math.sqrt(summits.reach[number] * overlap))
     begin = end = count
     for step in range(contact.size):
-        # Summits that come in at the strip's first column are those of ever lower columns.
+        # The lower a column of the surface, the later it comes to the strip.
         moved = step + first_step
         while begin > 0 and summits.column[begin - 1] + moved >= -margin:
             begin -= 1
         while end > begin and summits.column[end - 1] + moved > width - 1 + margin:
             end -= 1
-        contacts = 0
         for number in range(begin, end):
-            area, column = _touching(summits, added, strip, moved, number)
-            if area <= 0.0:
-                continue
-            top = number
-            while True:
-                saddle = summits.saddle[top] + _by_oil(added, shapes, top, column)
-                if saddle <= film[column]:
-                    break
-                other, there = _touching(summits, added, strip, moved, summits.higher[top])
-                if other <= 0.0:  # not in the strip
-                    break
-                top, column = summits.higher[top], there
-            if areas[top] == 0.0:
-                touching[contacts] = top
-                contacts += 1
-            areas[top] += area
-        for number in range(contacts):
-            top = touching[number]
-            column = min(max(round(summits.column[top] + moved), 0), width - 1)
-            if summits.curvature[top] > sharp[column]:
-                contact[step] += math.sqrt(4.0 / math.pi * areas[top])
-            areas[top] = 0.0
+            columns[number] = min(max(round(summits.column[number] + moved), 0), width - 1)
+            areas[number] = _touching(summits, added, strip, moved, number, columns[number])
+        for number in range(begin, end):
+            if areas[number] > 0.0:
+                top = number
+                while areas[summits.higher[top]] > 0.0 and top != summits.higher[top]:
+                    column = columns[top]
+                    if summits.saddle[top] + _by_oil(added, shapes, top, column) <= film[column]:
+                        break
+                    top = summits.higher[top]
+                sums[top] += areas[number]
+        for number in range(begin, end):
+            if sums[number] > 0.0 and summits.curvature[number] > sharp[columns[number]]:
+                contact[step] += math.sqrt(4.0 / math.pi * sums[number])
+            areas[number] = sums[number] = 0.0
 
 
 @inlined
@@ -244,21 +236,20 @@ def _by_oil(added, shapes, number, column):
 
 
 @kernel
-def _touching(summits, added, strip, moved, number):
-    """Area of a summit in contact, as far as it lies in the strip, and its column there."""
+def _touching(summits, added, strip, moved, number, column):
+    """Area of a summit in contact, as far as it lies in the strip."""
     film, shapes, has_edges = strip
     here, width = summits.column[number] + moved, film.size
-    column = min(max(round(here), 0), width - 1)
     overlap = summits.height[number] - film[column] + _by_oil(added, shapes, number, column)
     inside = min(here + 0.5, width - 0.5 - here)
     if overlap <= 0.0 or (inside <= 0.0 and not has_edges):
-        return 0.0, column
+        return 0.0
     area = summits.area[number] * overlap
     if has_edges:
         inside /= math.sqrt(summits.reach[number] * overlap)
         if inside <= -1.0:
-            return 0.0, column
+            return 0.0
         if inside < 1.0:  # the edge cuts the ellipse
             chord = inside * math.sqrt(1.0 - inside * inside)
             area *= (math.acos(-inside) + chord) / math.pi
-    return area, column
+    return area
