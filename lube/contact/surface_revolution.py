@@ -33,8 +33,8 @@ from lube.threads import on_threads
 from lube.types import Array
 
 ENOUGH = 25.0
-"""Breakthroughs expected in the strip from which on lower summits are left out: the rollers touch for
-all but 1e-4 of the time, with a resistance far below that of the leads."""
+"""Breakthroughs expected in the strip from which on lower summits are left out: the layer is broken
+for all but 1e-4 of the time, with a resistance far below that of the leads."""
 
 
 def revolution_contact(
