@@ -101,8 +101,9 @@ def _expected_run(study, points):
     """Estimate time and memory from those of the paper's study.
 
     A million points of a line take some 0.7 ms at an operating point in pure rolling, and 0.9 s at
-    a slide-to-roll ratio of 1. Surfaces take 2 s at each point, or 9 s where the oil answers them,
-    and the other jobs, most of all figures, 90 s.
+    a slide-to-roll ratio of 1. Surfaces take 2 s at each point, or 9 s where the oil answers them.
+    Those of the rig, with five grid points in the shortest wave, take 60 ns for each grid point, or
+    300 ns, and the other jobs, most of all figures, 90 s.
     """
     size = study.roughness.points / 1e6
     slips = sum(7e-4 + 0.9 * abs(ratio) for ratio in study.slips) / len(study.slips)
@@ -112,6 +113,11 @@ def _expected_run(study, points):
         seconds += study.realisations * size * (0.3 + runs)
     if study.has_surfaces:
         seconds += points * (9.0 if study.gap.is_answered else 2.0)
+    if study.rig.has_surfaces:
+        spec, length = study.line_spec, study.rollers.length
+        spacing = min(line.shortest_wavelength for line in spec.lines) / 5.0
+        each = 3e-7 if study.gap.is_answered else 6e-8
+        seconds += each * study.rig.pairs * spec.travel * length / spacing**2
     cores = os.cpu_count()
     minutes = max(1, round(seconds / 60.0 / cores))
     time = f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate"

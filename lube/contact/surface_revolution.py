@@ -141,6 +141,9 @@ class _Passage:
                 for one in fields
             ]
             by_oil = np.stack(by_oil, axis=1)
+            most = np.einsum("sm,nm->sn", by_oil, oil.shapes).max(axis=1, initial=-np.inf)
+            some = np.flatnonzero(summits.height + most > self._lowest)
+            summits, by_oil = _selected(summits, some), by_oil[some]
             columns = np.arange(self._film.size) / (1 << oil.shift)
             nodes = np.arange(oil.shapes.shape[0])
             shapes = np.stack([np.interp(columns, nodes, one) for one in oil.shapes.T], axis=1)
@@ -158,14 +161,18 @@ def _selected(summits, some):
 
 
 def _most_added(spec, strip):
-    """Height that the oil adds to the surface at most, m: five times the greatest rms height."""
+    """Height that the oil adds to a summit at most, m: three times its rms, where that is greatest.
+
+    What is high in the gap is nearly always higher as drawn, so that few summits add more.
+    """
     answer, square = strip.answers[0], 0.0
+    position = np.linspace(strip.begin, strip.begin + strip.width, COLUMNS)
+    shapes = answer.at(position / answer.half_width)
     for roller in range(2):
         along, across, power = surface_waves(spec, roller)
-        filters = answer.filters_at(along, across)
-        by_oil = np.einsum("nm,wm->nw", answer.shapes, filters)
+        by_oil = np.einsum("nm,wm->nw", shapes, answer.filters_at(along, across))
         square = square + np.sum(np.abs(by_oil) ** 2 * power, axis=1)
-    return 5.0 * math.sqrt(square.max())
+    return 3.0 * math.sqrt(square.max())
 
 
 def _lowest(strip, spec, length, sharp):
