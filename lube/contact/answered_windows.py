@@ -137,6 +137,7 @@ def _covariance(waves, power):
     return sum((part * power) @ part.T for part in each)
 
 
+@lru_cache(maxsize=4)
 def _bands(spec, roller, answer, points):
     """Bands of a line's waves: their power, phase from point to point, and filters by an answer."""
     first, amplitudes = wave_amplitudes(spec, roller)

@@ -33,8 +33,8 @@ from lube.threads import on_threads
 from lube.types import Array
 
 ENOUGH = 25.0
-"""Breakthroughs expected in the strip from which on lower summits are left out: the layer is broken
-for all but 1e-4 of the time, with a resistance far below that of the leads."""
+"""Expected number of breakthroughs in the strip that is enough: lower summits are left out. The
+layer is then broken for all but 1e-4 of the time, with a resistance far below that of the leads."""
 
 
 def revolution_contact(

@@ -107,12 +107,9 @@ def connected_summits(heights: Array, curvatures: Array, spacing: Pair, least: f
     for number in range(count):
         row, column = tops[number] // columns, tops[number] % columns
         _fit(fitted[:, number], heights, curvatures, spacing, row, column)
-    return Summits(*_rows(fitted), saddle[:count].copy(), higher[:count].copy())
-
-
-@inlined
-def _rows(fitted):
-    return fitted[0], fitted[1], fitted[2], fitted[3], fitted[4], fitted[5]
+    each = fitted[0], fitted[1], fitted[2], fitted[3], fitted[4], fitted[5]
+    saddle, higher = saddle[:count].copy(), higher[:count].copy()
+    return Summits(*each, saddle, higher)
 
 
 @kernel

@@ -54,7 +54,8 @@ def test_groups_of_summits_are_those_that_a_library_labels(level):
     heights = waves((90, 120), 3)
     curvatures = np.ones(heights.shape, np.float32)
     found = connected_summits(heights, curvatures, SPACING, level - 500.0)
-    # The library knows no periodic grid: every contact is one of a grid repeated nine times.
+    # The library does not join contacts across the sides of a periodic grid. So the grid is
+    # repeated three times each way, and contacts count whose top is in the middle.
     repeated = np.tile(heights, (3, 3))
     labels, count = scipy.ndimage.label(repeated > level, np.ones((3, 3)))
     places = scipy.ndimage.maximum_position(repeated, labels, np.arange(1, count + 1))
