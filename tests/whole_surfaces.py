@@ -26,6 +26,15 @@ def answered_strip(study, spec, film_shape, slip, ratio):
     return strip, film
 
 
+def drawn_waves(surface, generator):
+    """Waves of both rollers' surfaces."""
+    return [
+        np.fft.rfft2(generator.standard_normal(surface.coarse), norm="ortho")
+        * np.sqrt(part * surface.variances)
+        for part in (surface.first_part, 1.0 - surface.first_part)
+    ]
+
+
 class Unchanged:
     """Surfaces as drawn."""
 

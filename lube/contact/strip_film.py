@@ -196,12 +196,34 @@ class StripFilm:
         shared = [np.minimum(density[lag:], density[: density.size - lag]).sum() for lag in lags]
         return number / whole * lags, np.array(shared) / whole
 
+    def gap(self, spec: LineSpecLike, half_width: float) -> Pair:
+        """Find the mean gap and the rms height of the roughness in it, across the contact.
+
+        Parameters
+        ----------
+        spec : LineSpecLike
+            As in `contacts`.
+        half_width : float
+            Half of the contact width, m.
+
+        Returns
+        -------
+        tuple of numpy.ndarray
+            Both at `COLUMNS` even positions from edge to edge, m.
+        """
+        position = half_width * np.linspace(-1.0, 1.0, COLUMNS)
+        square = self._moments_at(spec, position)[..., 0, 0].sum(axis=0)
+        return self.thickness(position), np.broadcast_to(np.sqrt(square), position.shape)
+
     @functools.lru_cache(maxsize=1)  # noqa: B019 - of one strip at a time
     def _moments(self, spec):
         """Compute the `height_moments` in the gap, at `COLUMNS` columns."""
+        return self._moments_at(spec, self._columns(self.width / COLUMNS))
+
+    def _moments_at(self, spec, position):
         if not self.answers:
             return height_moments(spec)
-        position, each = self._columns(self.width / COLUMNS), enumerate(self.answers)
+        each = enumerate(self.answers)
         return np.stack(
             [moments_in_gap(surface_waves(spec, one), answer, position) for one, answer in each]
         )

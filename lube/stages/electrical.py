@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from lube.contact.surface_strip import surface_contact
+from lube.contact.surface_strip import strip_films, surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_profiles import six_digits
 from lube.grid.film_responses import with_surface_responses
@@ -80,12 +80,9 @@ def _phase(rig, *circuit):
 
 def _capacitances(study, film):
     """Capacitance of the rough contact and around it, and films by which meters explain it, m."""
-    spec, rig = study.line_spec, study.rig
-    step, layer = spec.height_step, study.boundary_layer.critical_thickness
-    mean_gap, inverse = film["film_thickness"], []
-    for gap in study_windows(study, film).gaps(spec):
-        height, rms = (part * step for part in gap or (np.nan, np.nan))
-        inverse.append(np.mean(electrical.mean_inverse_gap(height, rms, layer)))
+    rig, layer = study.rig, study.boundary_layer.critical_thickness
+    mean_gap = film["film_thickness"]
+    inverse = [electrical.mean_inverse_gap(*gap, layer).mean() for gap in _gaps(study, film)]
     read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
     contact = film["contact_half_width"], study.rollers.length, rig.oil_permittivity
     edge = film["contact_half_width"], film["reduced_radius"], *contact[1:]
@@ -97,6 +94,17 @@ def _capacitances(study, film):
         "surrounding_capacitance": around,
         "capacitance_film": read,
     }
+
+
+def _gaps(study, film):
+    """Mean gap and rms height across each contact, m; NaN where the film is not known."""
+    spec, unknown = study.line_spec, (np.nan, np.nan)
+    if study.rig.has_surfaces:
+        widths = xr.broadcast(film["film_thickness"], film["contact_half_width"])[1]
+        strips = zip(strip_films(spec, film, study.gap), widths.values.ravel(), strict=True)
+        return [strip.gap(spec, width) if strip else unknown for strip, width in strips]
+    gaps, step = study_windows(study, film).gaps(spec), spec.height_step
+    return [(gap[0] * step, gap[1] * step) if gap else unknown for gap in gaps]
 
 
 def _readings(study, film, rigs, slip, threads):

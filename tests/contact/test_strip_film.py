@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy import ndimage
-from whole_surfaces import Filtered, Unchanged, answered_strip
+from whole_surfaces import Filtered, Unchanged, answered_strip, drawn_waves
 
 from lube.contact import surface_strip
 from lube.contact.pair_scatter import pair_deviation
@@ -286,6 +286,40 @@ def test_a_thicker_film_is_on_the_same_strip(spec):
         rise = 0.0 - strip.breaking_curvatures(1e-6, 0.0)
         np.testing.assert_allclose(0.0 - thicker.breaking_curvatures(1e-6, 0.0), 1.1 * rise)
         np.testing.assert_array_equal(strip.thicker(1.0).films(1e-6), strip.films(1e-6))
+
+
+def test_the_gap_is_that_of_surfaces_as_drawn(spec):
+    rms = np.sqrt(surface_moments(spec).height)
+    for strip in films_of(spec):
+        film, found = strip.gap(spec, 0.5 * WIDTH)
+        expected = strip.thickness(0.5 * np.linspace(-WIDTH, WIDTH, 200))
+        np.testing.assert_allclose(film, expected, rtol=1e-12)
+        np.testing.assert_allclose(found, rms, rtol=1e-12)
+
+
+@pytest.mark.parametrize("film_shape", ["flat", "computed"])
+def test_the_roughness_in_the_gap_is_that_of_drawn_surfaces_as_the_oil_answers_them(
+    study, make_spec, film_shape
+):
+    spec = make_spec(50_000, longest_wavelength=4e-4, shortest_wavelength="16 points")
+    strip, film = answered_strip(study, spec, film_shape, 0.4, ratio=3.0)
+    surface, half_width = rough_surface(spec), film["contact_half_width"].item()
+    generator, columns = np.random.default_rng(1), strip.films(surface.spacing[1]).size
+    kinds, square = (Filtered(surface, strip, film), Unchanged(surface)), np.zeros((2, columns))
+    for _ in range(8):
+        waves = drawn_waves(surface, generator)
+        for number, surfaces in enumerate(kinds):
+            heights = surfaces.heights(waves)
+            for column in range(0, surface.points[1] - columns, surface.points[1] // 8):
+                square[number] += np.mean(heights(column, columns) ** 2, axis=0)
+    position = strip.begin + surface.spacing[1] * (np.arange(columns) + 0.5)
+    inside = np.abs(position) < half_width
+    mean, rms = strip.gap(spec, half_width)
+    across = np.linspace(-half_width, half_width, rms.size)
+    expected = np.interp(position[inside], across, rms) / spec.height_step / surface.rms
+    np.testing.assert_allclose(np.sqrt(square[0] / square[1])[inside], expected, rtol=0.03)
+    assert expected.min() < 0.9
+    np.testing.assert_allclose(mean, strip.thickness(across), rtol=1e-12)
 
 
 def test_curvatures_with_a_lay_are_those_of_the_surface(make_spec):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import scipy.ndimage
-from whole_surfaces import Filtered, Unchanged, answered_strip
+from whole_surfaces import Filtered, Unchanged, answered_strip, drawn_waves
 
 from lube.contact import surface_strip
 from lube.contact.surface_answers import COARSEST
@@ -105,15 +105,6 @@ def strip_of(spec, film_shape):
     if film_shape == "flat":
         return surface, StripFilm.flat(2.6 * rms, 6.01 * surface.spacing[1])
     return surface, StripFilm.shaped(*shape(rms, surface.spacing[1]), rms)
-
-
-def drawn_waves(surface, generator):
-    """Waves of both rollers' surfaces."""
-    return [
-        np.fft.rfft2(generator.standard_normal(surface.coarse), norm="ortho")
-        * np.sqrt(part * surface.variances)
-        for part in (surface.first_part, 1.0 - surface.first_part)
-    ]
 
 
 def searched(surfaces, surface, films, sharp, generator):
