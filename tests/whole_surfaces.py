@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import NdBSpline, make_interp_spline
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import strip_films
 from lube.grid.films import film_at
@@ -22,7 +23,9 @@ def answered_strip(study, spec, film_shape, slip, ratio):
     film = film_at(oil, study.rollers, *point, *choices, answered_surfaces=spec).squeeze()
     scale = ratio * np.sqrt(surface_moments(spec).height) / film["film_thickness"]
     film = film.assign({name: scale * film[name] for name in ("film_thickness", "film_profile")})
-    (strip,) = strip_films(spec, film, Gap(film_shape, "computed"))
+    gap = Gap(film_shape, "computed")
+    pair = RoughPair(spec, study.rollers.length, study.boundary_layer, study.seed, gap)
+    (strip,) = strip_films(pair, film)
     return strip, film
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import xarray as xr
 
 from lube.contact.ensemble import with_intervals
-from lube.contact.rough_pair import roughness_batch
+from lube.contact.rough_pair import RoughPair, roughness_batch
 from lube.contact.surface_strip import SURFACES
 from lube.errors import DataError
 from lube.grid.film_responses import with_surface_responses
@@ -180,8 +180,8 @@ def _surfaces_again(stored, film, run):
     for name in wanted.dims:
         wanted = wanted & (film[name] == stored[name].values)
     slips = run["slide_to_roll_ratio"]
-    given = spec, run["length"], film, layer, seed, slips, gap
-    return _at(stored, contact_of_surfaces(*given, wanted=wanted.drop_attrs()))
+    pair = RoughPair(spec, run["length"], layer, seed, gap)
+    return _at(stored, contact_of_surfaces(pair, film, slips, wanted=wanted.drop_attrs()))
 
 
 def _lines_again(stored, film, run):

@@ -195,19 +195,17 @@ class FilmSearch:
 
     def _at_surfaces(self, half_width, table_at, ends, own):
         """Films near the one sought, and the probability on surfaces there, with its limits."""
-        spec, length = self._rollers.lines, self._rollers.pair.length
+        pair = self._rollers.rough_pair(self._seed, self._gap)
         # Theory for high, flat films says where to look.
         ratios = LAMBDA_RATIOS[LAMBDA_RATIOS > 1.0]
-        films, moments = ratios * self._sigma, surface_moments(spec)
-        contacts = expected_contacts(films, moments, length, 2.0 * half_width)
+        films, moments = ratios * self._sigma, surface_moments(pair.spec)
+        contacts = expected_contacts(films, moments, pair.length, 2.0 * half_width)
         found = _crossing(ratios, -np.expm1(-contacts), self._share)
         around, is_plain = max(found, ratios[0]) * AROUND, self._gap.is_plain
-        layer, seed = self._rollers.layer, self._seed
         while True:
             ratios = around if is_plain else np.unique(np.clip(around, *ends))
             table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
-            weaker = self._weaker(table, own)
-            found = surface_contact(spec, length, table, layer, seed, self._gap, weaker=weaker)
+            found = surface_contact(pair, table, weaker=self._weaker(table, own))
             limits = [found[f"breakthrough_probability{end}"].values for end in LIMITS]
             is_seen = (limits[0] >= self._share).any()
             if is_seen or ratios[0] < LAMBDA_RATIOS[0] or ratios[0] in ends:

@@ -312,11 +312,11 @@ def of_surface(
     table: xr.Dataset, rollers: Rollers, seed: int, gap: Gap, slip: xr.DataArray | float
 ) -> dict[str, xr.DataArray]:
     """Contact of the surface at some films, by the names of `contact_probability`."""
-    spec, length, layer = rollers.lines, rollers.pair.length, rollers.layer
-    found = surface_contact(spec, length, table, layer, seed, gap, slide_to_roll_ratio=slip)
+    pair = rollers.rough_pair(seed, gap)
+    found = surface_contact(pair, table, slide_to_roll_ratio=slip)
     found = found.assign(surface_rates(found, table["entrainment_speed"]))
     share = [found[f"breakthrough_probability{end}"] for end in LIMITS]
-    of_pair = surface_prediction([each.values for each in share], revolution_size(spec, found))
+    of_pair = surface_prediction([each.values for each in share], revolution_size(pair.spec, found))
     for end, limit in zip(LIMITS[1:], of_pair, strict=True):
         found[f"breakthrough_probability_pair{end}"] = share[0].copy(data=limit)
     return {f"surface_{name}": values for name, values in found.items()}

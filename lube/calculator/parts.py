@@ -12,7 +12,9 @@ import xarray as xr
 
 from lube.calculator.answers import Answer, described
 from lube.calculator.arguments import amount
+from lube.contact.rough_pair import RoughPair
 from lube.errors import LubeError, RecordError, StudyError, located, right_one, shown
+from lube.grid.gap import Gap
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.study.field_types import validate
 from lube.study.line_spec import band_in_words, line_spec
@@ -251,6 +253,10 @@ class Rollers:
                 "Rollers: topography.use: got a measured line, need 'spectrum': an answer is a "
                 "mean over drawn lines; only a study can use a measured line"
             )
+
+    def rough_pair(self, seed: int, gap: Gap) -> RoughPair:
+        """Pair of rollers for the contact model; ``seed`` and ``gap`` as in `RoughPair`."""
+        return RoughPair(self.lines, self.pair.length, self.layer, seed, gap)
 
     def __repr__(self) -> str:
         pair = self.pair

@@ -117,19 +117,17 @@ def plan(
     formula = one_name("film_formula", film_formula)
     table = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
     reading = _reading_error(rollers, table, choices.gap, slip, rig, thresholds.values, seed)
-    records, spec, layer = turns.values.ravel().tolist(), rollers.lines, rollers.layer
+    records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, choices.gap)
     if model == "surface":
-        contact = surface_contact(spec, rollers.pair.length, table, layer, seed, choices.gap)
-        given = spec, rollers.pair.length, table, layer, choices.gap, seed
-        found, size, ratio = on_surfaces(*given, contact, slip, records)
+        contact = surface_contact(pair, table)
+        found, size, ratio = on_surfaces(pair, table, contact, slip, records)
         reading, realisations = reading_of_surfaces(reading, found.probability), SURFACES
     else:
         contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
         slower, width = min(speed_ratios(slip)), 2.0 * table["contact_half_width"]
-        windows = spec.independent_windows(width, slower)
+        windows = rollers.lines.independent_windows(width, slower)
         size = sample_size(contact["breakthrough_probability"], windows).ravel()
-        lines = spec, table, layer, choices.gap, seed
-        found, ratio = slopes(*lines), line_ratios(*lines, slip, records)
+        found, ratio = slopes(pair, table), line_ratios(pair, table, slip, records)
     error = relative_error(found.probability, size, ratio[:, None], reading)
     oils, dims = oil.at(table["temperature"]), table["film_thickness"].dims
     slope = film_by_coefficient(oils, rollers.pair, table["force"], table["speed"], formula)

@@ -1,18 +1,53 @@
-"""Pairs of rough lines, drawn as the study's seed says."""
+"""Pairs of rough rollers, and of their lines, drawn as the study's seed says."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 import xarray as xr
 
+from lube.grid.gap import PLAIN, Gap
 from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.spectra import line_attributes
-from lube.surfaces.synthetic import ROLLER_NUMBERS, draw_realisation
+from lube.surfaces.synthetic import ROLLER_NUMBERS, LineSpecLike, draw_realisation
 from lube.types import Pair
 
 PADDING = np.iinfo(np.int32).min
 """Fill value beyond the end of the shorter of two lines."""
+
+
+@dataclass(frozen=True)
+class RoughPair:
+    """A pair of rough rollers: all that their contact depends on, besides the film.
+
+    Attributes
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines, and of the surfaces that they stand for.
+    length : float
+        Length L' of the rollers, m.
+    layer : BoundaryLayer
+        The boundary layer.
+    seed : int
+        Seed of the study.
+    gap : Gap, optional
+        How film and roughness make up the gap; by default flat films, and roughness as drawn.
+    """
+
+    spec: LineSpecLike
+    length: float
+    layer: BoundaryLayer
+    seed: int
+    gap: Gap = PLAIN
+
+    @classmethod
+    def of(cls, study: Study) -> Self:
+        """Pair of rollers of a study."""
+        length, layer = study.rollers.length, study.boundary_layer
+        return cls(study.line_spec, length, layer, study.seed, study.gap)
 
 
 def drawn(study: Study, realisation: int) -> Pair:

@@ -12,7 +12,6 @@ add up. A contact breaks its boundary layer if its highest summit in the strip i
 
 import math
 import os
-from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -20,15 +19,13 @@ import scipy.ndimage
 import scipy.optimize
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import COLUMNS
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import mean_breaking_curvature, strip_films
 from lube.ehl.line_contact import one_blas_thread
-from lube.grid.gap import PLAIN, Gap
 from lube.kernels.summits import Summits, connected_summits, passing_contacts
-from lube.study.rollers import BoundaryLayer
 from lube.surfaces.rough_surface import longest_waves, rough_surface, surface_waves
-from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 from lube.types import Array
 
@@ -38,23 +35,17 @@ layer is then broken for all but 1e-4 of the time, with a resistance far below t
 
 
 def revolution_contact(
-    spec: LineSpecLike,
-    length: float,
-    film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    seeds: Iterable[int],
-    gap: Gap = PLAIN,
-    threads: int | None = None,
+    pair: RoughPair, film: xr.Dataset, number: int, threads: int | None = None
 ) -> Array:
     """Find the length of contact over a revolution of one pair of rollers, at some films.
 
     Parameters
     ----------
-    spec, length, film, boundary_layer, gap, threads
+    pair, film, threads
         As in `lube.contact.surface_strip.surface_contact`; the films over ``operating_point``.
         Both rollers have the same perimeter.
-    seeds : iterable of int
-        Seed of the pair.
+    number : int
+        Number of the pair's surfaces, which are others for each number.
 
     Returns
     -------
@@ -62,33 +53,31 @@ def revolution_contact(
         Shape (points, T), float32: summed diameters of contacts whose layer breaks, m, at T equal
         steps of a revolution; NaN where the film is not known.
     """
-    strips = strip_films(spec, film, gap)
+    spec, strips = pair.spec, strip_films(pair, film)
     known = {point: strip for point, strip in enumerate(strips) if strip}
     found = np.full((len(strips), 1), np.nan, np.float32)
     if not known:
         return found
     wide = max(strip.width for strip in known.values())
-    multiple = 2**COARSEST if gap.is_answered else 1
+    multiple = 2**COARSEST if pair.gap.is_answered else 1
     surface = rough_surface(spec, wide, multiple=multiple)
-    sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
+    sharp = mean_breaking_curvature(pair, film)
     with one_blas_thread():
-        passages = {
-            point: _Passage(strip, spec, length, surface, sharp) for point, strip in known.items()
-        }
+        passages = {point: _Passage(strip, pair, surface, sharp) for point, strip in known.items()}
     steps = round(spec.points[0] * spec.spacing / surface.spacing[1])
-    rows = max(int(length / surface.spacing[0]), 1)
+    rows = max(int(pair.length / surface.spacing[0]), 1)
     found = np.full((len(strips), steps), np.nan, np.float32)
     found[list(known)] = 0.0
     least = min(passage.lowest_drawn for passage in passages.values())
     many = threads or os.cpu_count() or 1
 
-    def of_column(number):
+    def of_column(column):
         """Contacts of all pieces side by side that begin at one column."""
-        columns = min(steps - number * surface.points[1], surface.points[1])
+        columns = min(steps - column * surface.points[1], surface.points[1])
         sums = {point: passage.empty() for point, passage in passages.items()}
         for piece, begin in enumerate(range(0, rows, surface.points[0])):
-            generator = np.random.default_rng(np.random.SeedSequence((*seeds, number, piece)))
-            heights, curvatures, waves = surface.draw(generator)
+            seeds = np.random.SeedSequence((pair.seed, number, column, piece))
+            heights, curvatures, waves = surface.draw(np.random.default_rng(seeds))
             summits = connected_summits(heights, curvatures, surface.spacing, least)
             inside = np.flatnonzero((summits.row < rows - begin) & (summits.column < columns))
             by_column = inside[np.argsort(summits.column[inside], kind="stable")]
@@ -100,9 +89,9 @@ def revolution_contact(
     numbers = range(math.ceil(steps / surface.points[1]))
     for begin in range(0, len(numbers), 4 * many):  # few pieces are in memory at once
         some = numbers[begin : begin + 4 * many]
-        for number, sums in zip(some, on_threads(of_column, some, threads), strict=True):
+        for column, sums in zip(some, on_threads(of_column, some, threads), strict=True):
             for point, contact in sums.items():
-                first = passages[point].first_step - number * surface.points[1]
+                first = passages[point].first_step - column * surface.points[1]
                 np.add.at(found[point], (first + np.arange(contact.size)) % steps, contact)
     return found
 
@@ -110,11 +99,11 @@ def revolution_contact(
 class _Passage:
     """Summits of pieces of a surface on their way through the strip of an operating point."""
 
-    def __init__(self, strip, spec, length, surface, sharp):
-        along = surface.spacing[1]
+    def __init__(self, strip, pair, surface, sharp):
+        spec, along = pair.spec, surface.spacing[1]
         self._film = strip.films(along) / spec.height_step
         self._sharp = strip.breaking_curvatures(along, sharp) / spec.height_step
-        self._lowest = _lowest(strip, spec, length, sharp) / spec.height_step
+        self._lowest = _lowest(strip, spec, pair.length, sharp) / spec.height_step
         self._has_edges, self._answer = strip.has_edges, strip.answered(surface, (1, 1))
         self.lowest_drawn = self._lowest
         if self._answer:

@@ -30,17 +30,16 @@ import scipy.special
 import xarray as xr
 
 from lube.contact.pair_scatter import RecurringContacts, pair_deviation, turn_ratio
+from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments
 from lube.contact.surface_answers import COARSEST, SurfaceAnswer
 from lube.contact.waves import answers_at
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
-from lube.grid.gap import PLAIN, Gap
 from lube.kernels.areal import BLOCK, GROUP, NO_ANSWER, contacts_per_row, touching_strips
 from lube.physics.excursions import breaking_curvature
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, jackknife_interval, mean_interval
-from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
 from lube.surfaces.lay import extents
 from lube.surfaces.rough_surface import longest_waves, rough_surface, surface_grid
@@ -80,12 +79,8 @@ _VARIABLES = (*_EXPECTED, *_SAMPLED, "pair_deviation")
 
 
 def surface_contact(
-    spec: LineSpecLike,
-    length: float,
+    pair: RoughPair,
     film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    seed: int,
-    gap: Gap = PLAIN,
     threads: int | None = None,
     weaker: Values = 1.0,
     fewer: int = 1,
@@ -97,24 +92,16 @@ def surface_contact(
 
     Parameters
     ----------
-    spec : LineSpecLike
-        Parameters of the lines that stand for the surfaces; `Study.line_spec` of a study.
-    length : float
-        Length L' of the rollers, m.
+    pair : RoughPair
+        The rollers.
     film : xarray.Dataset
         ``film_thickness`` and ``contact_half_width`` (m) over any dimensions, and
         ``reduced_modulus`` (Pa); for a film with a shape also ``film_profile``, for surfaces that
         the oil answers also its responses, from `lube.grid.film_responses.surface_responses`.
-    boundary_layer : BoundaryLayer
-        The boundary layer.
-    seed : int
-        Seed of the study.
-    gap : Gap, optional
-        How film and roughness make up the gap; by default flat films, and surfaces as drawn.
     threads : int, optional
         Threads that share the work, by default one for each core; they do not change the results.
     weaker : float or numpy.ndarray, optional
-        How many times weaker than `boundary_layer` the layer is, at all films or at each.
+        How many times weaker the boundary layer is, at all films or at each.
     fewer : int, optional
         How many times fewer surfaces are drawn than `SURFACES`, for a faster, less exact result.
     slide_to_roll_ratio : xarray.DataArray or float, optional
@@ -145,21 +132,21 @@ def surface_contact(
         As from `lube.study.surface_checks.check_surfaces`.
     """
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    check_surfaces(spec, length, 2.0 * half_width.max().item(), gap)
-    strips = strip_films(spec, film, gap)
+    check_surfaces(pair.spec, pair.length, 2.0 * half_width.max().item(), pair.gap)
+    strips = strip_films(pair, film)
     known = [point for point, strip in enumerate(strips) if strip is not None]
-    sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
-    sharp = np.broadcast_to(sharp / weaker, thickness.size)[known]
+    sharp = mean_breaking_curvature(pair, film) / weaker
+    sharp = np.broadcast_to(sharp, thickness.size)[known]
     values = {name: np.full(thickness.size, np.nan) for name in _VARIABLES}
     wanted = xr.DataArray(True) if wanted is None else wanted
     wanted = wanted.broadcast_like(thickness).transpose(*thickness.dims).values.ravel()[known]
     if known:
         some = [strips[point] for point in known]
-        seeds = surface_seeds(seed, SURFACES // fewer)
+        seeds = surface_seeds(pair.seed, SURFACES // fewer)
         changed = np.broadcast_to(thicker, thickness.size)[known].tolist()
         changed = [one.thicker(times) for one, times in zip(some, changed, strict=True)]
-        choices = wanted, length, seeds, threads
-        for name, of_known in _contacts(spec, some, changed, sharp, *choices).items():
+        choices = sharp, wanted, seeds, threads
+        for name, of_known in _contacts(pair, some, changed, *choices).items():
             values[name][known] = of_known
     dims, shape = thickness.dims, thickness.shape
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
@@ -167,23 +154,24 @@ def surface_contact(
     looked_at = set(np.array(known, int)[wanted])
     strips = [strip if point in looked_at else None for point, strip in enumerate(strips)]
     points = thickness.copy(data=np.arange(thickness.size).reshape(thickness.shape))
-    width = _passage_width(spec, strips, length, slide_to_roll_ratio, points)
+    width = _passage_width(pair, strips, slide_to_roll_ratio, points)
     return found.assign(passage_width=width)
 
 
-def _passage_width(spec, strips, length, slide_to_roll_ratio, points):
+def _passage_width(pair, strips, slide_to_roll_ratio, points):
     """Way of the rollers while a contact is in the strip, over numbers of strips and slip."""
 
     def at(slip, point):
         strip = strips[point]
-        return strip.passage_width(spec, length, slip) if strip else np.nan
+        return strip.passage_width(pair.spec, pair.length, slip) if strip else np.nan
 
     return xr.apply_ufunc(np.vectorize(at, otypes=[float]), slide_to_roll_ratio, points)
 
 
-def mean_breaking_curvature(reduced_modulus: float, layer: BoundaryLayer) -> float:
+def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:
     """Mean curvature of an overlap above which its boundary layer breaks, 1/m."""
-    return 0.5 * breaking_curvature(reduced_modulus, layer.critical_thickness, layer.shear_strength)
+    layer = pair.layer.critical_thickness, pair.layer.shear_strength
+    return 0.5 * breaking_curvature(film["reduced_modulus"].item(), *layer)
 
 
 def surface_seeds(seed: int, count: int) -> list:
@@ -193,18 +181,18 @@ def surface_seeds(seed: int, count: int) -> list:
     return [np.random.SeedSequence((seed, number)).spawn(7)[5:] for number in range(count)]
 
 
-def strip_films(spec: LineSpecLike, film: xr.Dataset, gap: Gap) -> list[StripFilm | None]:
+def strip_films(pair: RoughPair, film: xr.Dataset) -> list[StripFilm | None]:
     """Films across the strips of operating points, None where they are not known.
 
     Parameters
     ----------
-    spec, film, gap
+    pair, film
         As in `surface_contact`.
     """
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     widths = half_width.values.ravel().tolist()
-    if gap.has_shape:
-        rms, position = math.sqrt(surface_moments(spec).height), film["film_position"].values
+    if pair.gap.has_shape:
+        rms, position = math.sqrt(surface_moments(pair.spec).height), film["film_position"].values
         rows = shaped_films(film).values.reshape(thickness.size, -1)
         strips = [
             StripFilm.shaped(position * width, row, rms) if np.isfinite(row).all() else None
@@ -213,9 +201,9 @@ def strip_films(spec: LineSpecLike, film: xr.Dataset, gap: Gap) -> list[StripFil
     else:
         points = zip(thickness.values.ravel().tolist(), widths, strict=True)
         strips = [None if math.isnan(one[0]) else StripFilm.flat(*one) for one in points]
-    if not gap.is_answered:
+    if not pair.gap.is_answered:
         return strips
-    answers = xr.broadcast(answers_at(film, gap.has_shape, SurfaceAnswer), thickness)[0]
+    answers = xr.broadcast(answers_at(film, pair.gap.has_shape, SurfaceAnswer), thickness)[0]
     answers = answers.transpose(*thickness.dims, "roller").values.reshape(-1, 2)
     return [
         replace(strip, answers=tuple(both)) if strip and both[0] else None
@@ -223,8 +211,9 @@ def strip_films(spec: LineSpecLike, film: xr.Dataset, gap: Gap) -> list[StripFil
     ]
 
 
-def _contacts(spec, strips, changed, sharp, wanted, length, seeds, threads):
+def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
     """Variables of `surface_contact` at some strips, of which changed ones are sampled."""
+    spec, length = pair.spec, pair.length
     expected = np.full((2, len(strips)), np.nan)
     for point in np.flatnonzero(wanted):
         expected[:, point] = strips[point].expected(spec, length, sharp[point])
@@ -233,8 +222,7 @@ def _contacts(spec, strips, changed, sharp, wanted, length, seeds, threads):
 
     def sample(surface, some, certain):
         own = [changed[point] for point in some]
-        choices = length, seeds, threads
-        sampled = _sampled(spec, surface, own, certain, sharp[some], *choices)
+        sampled = _sampled(pair, surface, own, certain, sharp[some], seeds, threads)
         for name, values in sampled.items():
             found[name][some] = values
 
@@ -300,17 +288,17 @@ def smallest_contacts(spec: LineSpecLike, strips: Sequence[StripFilm]) -> Array:
     return 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
 
 
-def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
+def _sampled(pair, surface, strips, certain, sharp, seeds, threads):
     """Probabilities and numbers of contacts, with their intervals, shape (strips,) each.
 
     `certain` says of each strip whether contact is certain there.
     """
     down, along = surface.spacing
-    reach = _reach(spec, down)
+    reach, step = _reach(pair.spec, down), pair.spec.height_step
     rows = sum(reach), reach[1]
-    films = [strip.films(along) / spec.height_step for strip in strips]
+    films = [strip.films(along) / step for strip in strips]
     limits = [
-        strip.breaking_curvatures(along, own) / spec.height_step
+        strip.breaking_curvatures(along, own) / step
         for strip, own in zip(strips, sharp, strict=True)
     ]
     with one_blas_thread():
@@ -323,7 +311,7 @@ def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
 
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
-    rows = max(int(length / down), 1)
+    rows = max(int(pair.length / down), 1)
     results = {}
     for which, (name, counts) in enumerate(_NUMBERS.items()):
         limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)

@@ -10,15 +10,13 @@ import numpy as np
 import scipy.ndimage
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import mean_breaking_curvature, smallest_contacts, strip_films
 from lube.ehl.line_contact import one_blas_thread
-from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
-from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
 from lube.surfaces.rough_surface import UNRESOLVED, field, rough_surface
-from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 
 STEPS = 200
@@ -28,20 +26,16 @@ PLACES = 100
 
 
 def surface_traces(
-    spec: LineSpecLike,
-    length: float,
+    pair: RoughPair,
     film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    seed: int,
     slide_to_roll_ratio: float = 0.0,
-    gap: Gap = PLAIN,
     threads: int | None = None,
 ) -> xr.Dataset:
     """Follow the contacts of surfaces along the rollers, at some films on the same surfaces.
 
     Parameters
     ----------
-    spec, length, film, boundary_layer, seed, gap, threads
+    pair, film, threads
         As in `lube.contact.surface_strip.surface_contact`; the films over ``operating_point``.
     slide_to_roll_ratio : float, optional
         Slide-to-roll ratio, by default pure rolling.
@@ -60,16 +54,16 @@ def surface_traces(
     StudyError, DataError
         As from `lube.study.surface_checks.check_surfaces`.
     """
-    widest = 2.0 * film["contact_half_width"].max().item()
-    check_surfaces(spec, length, widest, gap)
-    strips = strip_films(spec, film, gap)
+    spec, widest = pair.spec, 2.0 * film["contact_half_width"].max().item()
+    check_surfaces(spec, pair.length, widest, pair.gap)
+    strips = strip_films(pair, film)
     some = [strip for strip in strips if strip]
     wide = max([widest, *(strip.width for strip in some)])
     smallest = tuple(smallest_contacts(spec, some).min(axis=0)) if some else UNRESOLVED
-    multiple = 2**COARSEST if gap.is_answered else 1
+    multiple = 2**COARSEST if pair.gap.is_answered else 1
     surface = rough_surface(spec, wide, smallest, multiple=multiple)
     down, along = surface.spacing
-    sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
+    sharp = mean_breaking_curvature(pair, film)
     with one_blas_thread():
         known = {
             point: (
@@ -80,13 +74,13 @@ def surface_traces(
             for point, strip in enumerate(strips)
             if strip
         }
-    rows = max(int(length / down), 1)
+    rows = max(int(pair.length / down), 1)
     begins = range(0, rows, surface.points[0])
     speeds = surface_speeds(1.0, slide_to_roll_ratio)
     way = surface.sides[1] / max(speeds) / STEPS * np.arange(STEPS)
 
     def of_piece(begin):
-        seeds = np.random.SeedSequence((seed, begin // surface.points[0])).spawn(9)[8]
+        seeds = np.random.SeedSequence((pair.seed, begin // surface.points[0])).spawn(9)[8]
         moving = _moving(surface, np.random.default_rng(seeds), speeds)
         return {
             point: _followed(surface, moving, *each, min(rows - begin, surface.points[0]), way)

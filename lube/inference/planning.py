@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import speed_ratios
@@ -25,9 +26,7 @@ from lube.statistics.one_pair import (
     quantile,
     scatter_ratio,
 )
-from lube.study.line_spec import LineSpec
-from lube.study.rollers import BoundaryLayer, RollerPair
-from lube.surfaces.synthetic import LineSpecLike
+from lube.study.rollers import RollerPair
 from lube.types import Array, Values
 
 PAIRS = 16
@@ -66,24 +65,15 @@ class Slopes(NamedTuple):
     by_layer: Array
 
 
-def slopes(
-    spec: LineSpec,
-    film: xr.Dataset,
-    layer: BoundaryLayer,
-    gap: Gap,
-    seed: int,
-    threads: int | None = None,
-) -> Slopes:
+def slopes(pair: RoughPair, film: xr.Dataset, threads: int | None = None) -> Slopes:
     """Sample the probability of breakthrough, and its slopes, at some operating points.
 
     Parameters
     ----------
-    spec : LineSpec
-        Parameters of the lines.
-    film, layer, gap
+    pair : RoughPair
+        The rollers.
+    film : xarray.Dataset
         As in `lube.contact.windows.ContactWindows`.
-    seed : int
-        Seed of the lines.
     threads : int, optional
         Threads that share the work.
 
@@ -95,8 +85,8 @@ def slopes(
 
     def sampled(thicker, weaker):
         changed = film.assign(film_thickness=film["film_thickness"] * thicker)
-        windows = ContactWindows(spec, changed, layer, gap, weaker)
-        return windows.on_pairs(spec, seed, PAIRS, threads)[:, 1].mean(axis=0)
+        windows = ContactWindows(pair.spec, changed, pair.layer, pair.gap, weaker)
+        return windows.on_pairs(pair.spec, pair.seed, PAIRS, threads)[:, 1].mean(axis=0)
 
     changed = [sampled(*change) for change in zip(_THICKER, _WEAKER, strict=True)]
     # An estimate of the probability may exceed one.
@@ -104,11 +94,8 @@ def slopes(
 
 
 def line_ratios(
-    spec: LineSpec,
+    pair: RoughPair,
     film: xr.Dataset,
-    layer: BoundaryLayer,
-    gap: Gap,
-    seed: int,
     slide_to_roll_ratio: float,
     turns: Sequence[float],
     drift: float = 0.0,
@@ -121,7 +108,7 @@ def line_ratios(
 
     Parameters
     ----------
-    spec, film, layer, gap, seed
+    pair, film
         As in `slopes`.
     slide_to_roll_ratio, turns, drift
         As in `on_surfaces`.
@@ -133,12 +120,13 @@ def line_ratios(
     numpy.ndarray, shape (turns, P)
         Variance of a record's share over that of a realisation.
     """
+    spec = pair.spec
     reach = spec.longest_wavelength / spec.spacing
     motion = speed_ratios(slide_to_roll_ratio), spec.points, reach
-    windows = ContactWindows(spec, film, layer, Gap(gap.film_shape))
+    windows = ContactWindows(spec, film, pair.layer, Gap(pair.gap.film_shape))
     persistent = np.ones((2, windows.size))
     if distinct_alignments(max(turns), *motion) > 1:
-        persistent = persistent_share(*crosswise(windows, spec, seed, LINES))
+        persistent = persistent_share(*crosswise(windows, spec, pair.seed, LINES))
         persistent = np.where(np.isfinite(persistent), persistent, 1.0)
     by_turns = [
         [scatter_ratio(one, *motion, part, drift) for part in persistent.T]
@@ -148,12 +136,8 @@ def line_ratios(
 
 
 def on_surfaces(
-    spec: LineSpecLike,
-    length: float,
+    pair: RoughPair,
     film: xr.Dataset,
-    layer: BoundaryLayer,
-    gap: Gap,
-    seed: int,
     contact: xr.Dataset,
     slide_to_roll_ratio: float,
     turns: Sequence[float],
@@ -172,7 +156,7 @@ def on_surfaces(
 
     Parameters
     ----------
-    spec, length, film, layer, gap, seed, threads
+    pair, film, threads
         As in `lube.contact.surface_strip.surface_contact`.
     contact : xarray.Dataset
         Contact of the surfaces at these films, from the same function.
@@ -195,10 +179,10 @@ def on_surfaces(
     """
     contact = contact.transpose(*film["film_thickness"].dims)
     share = contact["breakthrough_probability"].values.ravel()
-    size = revolution_size(spec, contact).ravel()
+    size = revolution_size(pair.spec, contact).ravel()
     records = np.repeat(np.array(turns)[:, None], share.size, axis=1)
-    motion = np.full(share.size, slide_to_roll_ratio), records, gap, drift
-    ratios = surface_scatter(spec, length, film, share, *motion)
+    motion = np.full(share.size, slide_to_roll_ratio), records, drift
+    ratios = surface_scatter(pair, film, share, *motion)
     tells = np.any([np.isfinite(relative_error(share, size, one)) for one in ratios], axis=0)
     touch = contact["geometric_contact_probability"].values.ravel()
     holds = tells & (share < (1.0 - HOLDS) * touch)
@@ -206,8 +190,8 @@ def on_surfaces(
     films = film["film_thickness"].expand_dims(change=len(_THICKER))
     wanted = films.copy(data=np.reshape([tells, tells, holds, holds], films.shape))
     changed = {"thicker": np.repeat(_THICKER, share.size), "weaker": np.repeat(_WEAKER, share.size)}
-    given = spec, length, film.assign(film_thickness=films), layer, seed, gap, threads
-    found = surface_contact(*given, fewer=FEWER, wanted=wanted, **changed)
+    film = film.assign(film_thickness=films)
+    found = surface_contact(pair, film, threads, fewer=FEWER, wanted=wanted, **changed)
     changed = found["breakthrough_probability"].values.reshape(len(_THICKER), -1)
     with np.errstate(divide="ignore", invalid="ignore"):
         groups, own = -np.log1p(-changed), -np.log1p(-share) * (1.0 - share) / share

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import study_windows
@@ -76,10 +77,10 @@ def surfaces_at_records(
         parts = [(here, grid.isel(record=row_of[here])), (~here, others)]
     thickness = xr.DataArray(ratios, dims="curve_film") * first["composite_rms_roughness"].item()
     slips, turns = (experiment[name].values for name in (_SLIP, "turns"))
-    rollers, scatter = (study.line_spec, study.rollers.length), np.empty(row_of.size)
+    pair, scatter = RoughPair.of(study), np.empty(row_of.size)
     for records, some in (part for part in parts if part[0].any()):
-        motion = slips[records], turns[records], study.gap, study.rig.drift
-        scatter[records] = surface_scatter(*rollers, some, own[0, records], *motion)
+        motion = slips[records], turns[records], study.rig.drift
+        scatter[records] = surface_scatter(pair, some, own[0, records], *motion)
         some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
         curves[..., records] = _sampled(study, some, threads, FEWER)
     by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
@@ -144,9 +145,7 @@ def _sampled(study, films, threads, fewer=1):
         return np.empty((4, *films["film_thickness"].shape))
     one_film = films.isel(curve_film=0, missing_dims="ignore")
     some, inverse = study_windows(study, one_film).distinct()
-    given = study.line_spec, study.rollers.length, films.isel(record=some)
-    choices = study.boundary_layer, study.seed, study.gap, threads
-    found = surface_contact(*given, *choices, fewer=fewer)
+    found = surface_contact(RoughPair.of(study), films.isel(record=some), threads, fewer=fewer)
     return _numbers(study, found.transpose(..., "record"))[..., inverse]
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.pair_scatter import RecurringContacts, persistent_part, slip_ratio, turn_ratio
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
-from lube.grid.gap import Gap
 from lube.statistics.one_pair import prediction_limits, scatter_ratio
 from lube.surfaces.rough_surface import longest_waves
 from lube.surfaces.synthetic import LineSpecLike
@@ -63,21 +63,19 @@ def surface_prediction(
 
 
 def surface_scatter(
-    spec: LineSpecLike,
-    length: float,
+    pair: RoughPair,
     films: xr.Dataset,
     shares: Array,
     slips: Array,
     turns: Array,
-    gap: Gap,
     drift: float,
 ) -> Array:
     """Find how far the share of each record scatters between pairs of surfaces.
 
     Parameters
     ----------
-    spec, length
-        As in `lube.contact.surface_strip.surface_contact`.
+    pair : RoughPair
+        The rollers.
     films : xarray.Dataset
         Films at the records by one film formula, with their responses if the oil answers.
     shares : numpy.ndarray, shape (record,)
@@ -86,8 +84,6 @@ def surface_scatter(
         Slide-to-roll ratios.
     turns : numpy.ndarray, shape (..., record)
         Revolutions of the records, of one or of several durations.
-    gap : Gap
-        As in `lube.contact.surface_strip.surface_contact`.
     drift : float
         As in `lube.statistics.one_pair.drift_factor`.
 
@@ -97,9 +93,10 @@ def surface_scatter(
         Of the shape of `turns`: variance of the record's share over that of one revolution of pure
         rolling; NaN where the film is not known.
     """
+    spec, length = pair.spec, pair.length
     # Ridges across rolling are no longer along it.
     reach, recurring = longest_waves(spec)[1] / spec.spacing, RecurringContacts(spec)
-    strips = strip_films(spec, films, gap)
+    strips = strip_films(pair, films)
     durations = turns.reshape(-1, shares.size).T.tolist()
 
     def of_record(slip, turns, share, strip):

@@ -25,7 +25,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from lube.contact.rough_pair import drawn
+from lube.contact.rough_pair import RoughPair, drawn
 from lube.contact.surface_revolution import revolution_contact
 from lube.contact.windows import study_windows
 from lube.grid.discretise import revolution, speed_ratios
@@ -87,9 +87,8 @@ def simulated_revolutions(
 
 def _surface_runs(study, points, number, threads):
     """As `_line_runs`, of surfaces at all operating points."""
-    spec, seeds = study.line_spec, (study.seed, number)
-    choices = study.boundary_layer, seeds, study.gap, threads
-    lengths = revolution_contact(spec, study.rollers.length, points, *choices)
+    spec = study.line_spec
+    lengths = revolution_contact(RoughPair.of(study), points, number, threads)
     steps = lengths.shape[1]
     parts = (lengths[:, : max(round(part * steps), 1)] for part in _parts(study))
     turns = ((whole_points(each, spec) for each in part) for part in parts)

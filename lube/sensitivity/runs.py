@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.gap import Gap
@@ -218,13 +219,13 @@ def _probabilities(deviating, model, values, film):
     # Under films that are over a factor, lines break as higher ones do if their layer is weaker.
     weaker = film.get("roughness_factor", 1.0)
     if model.contact_model == "surface":
-        given = spec, study.rollers.length, film, layer
-        choices = {"gap": model.gap, "threads": 1, "fewer": FEWER_SURFACES, "weaker": weaker}
+        choices = {"threads": 1, "fewer": FEWER_SURFACES, "weaker": weaker}
         found = []
         for seed in range(SURFACE_SEEDS):
+            pair = RoughPair(spec, study.rollers.length, layer, study.seed + seed, model.gap)
             # The scatter between so few surfaces is not needed.
             with np.errstate(invalid="ignore", divide="ignore"):
-                contact = surface_contact(*given, study.seed + seed, **choices)
+                contact = surface_contact(pair, film, **choices)
             found.append(contact["breakthrough_probability"].values)
         return np.stack([found[seed % SURFACE_SEEDS] for seed in range(SEEDS)], axis=1)
     windows = ContactWindows(spec, film, layer, model.gap, weaker)

@@ -4,13 +4,11 @@ from collections.abc import Sequence
 
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.grid.film_responses import with_surface_responses
-from lube.grid.gap import Gap
 from lube.schema import CONTACT_DIMS, label
-from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
-from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Datasets
 
 FEWER = 4
@@ -37,24 +35,20 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     StudyError, DataError
         As from `lube.contact.surface_strip.surface_contact`.
     """
-    film, length = with_surface_responses(inputs), study.rollers.length
+    film = with_surface_responses(inputs)
     if not study.has_surfaces:
         film = film.isel(film_formula=[0])
-    choices = study.boundary_layer, study.seed, study.slips, study.gap, threads
-    found = contact_of_surfaces(study.line_spec, length, film, *choices).assign(length=length)
+    found = contact_of_surfaces(RoughPair.of(study), film, study.slips, threads)
+    found = found.assign(length=study.rollers.length)
     if study.gap.is_answered:
         found = found.assign(surface_rms_deformation=film["surface_rms_deformation"].drop_attrs())
     return label(found, "areal")
 
 
 def contact_of_surfaces(
-    spec: LineSpecLike,
-    length: float,
+    pair: RoughPair,
     film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    seed: int,
     slips: Sequence[float],
-    gap: Gap,
     threads: int | None = None,
     wanted: xr.DataArray | None = None,
 ) -> xr.Dataset:
@@ -62,7 +56,7 @@ def contact_of_surfaces(
 
     Parameters
     ----------
-    spec, length, film, boundary_layer, seed, gap, threads, wanted
+    pair, film, threads, wanted
         As in `lube.contact.surface_strip.surface_contact`, of a ``film`` dataset.
     slips : sequence of float
         Levels of the slide-to-roll ratio.
@@ -85,7 +79,9 @@ def contact_of_surfaces(
         if not some.sizes["film_formula"]:
             continue
         contact = surface_contact(
-            *(spec, length, some, boundary_layer, seed, gap, threads),
+            pair,
+            some,
+            threads,
             fewer=fewer,
             slide_to_roll_ratio=levels,
             wanted=None if wanted is None else wanted.isel(film_formula=formulas),

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import strip_films, surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_profiles import six_digits
@@ -101,7 +102,7 @@ def _gaps(study, film):
     spec, unknown = study.line_spec, (np.nan, np.nan)
     if study.rig.has_surfaces:
         widths = xr.broadcast(film["film_thickness"], film["contact_half_width"])[1]
-        strips = zip(strip_films(spec, film, study.gap), widths.values.ravel(), strict=True)
+        strips = zip(strip_films(RoughPair.of(study), film), widths.values.ravel(), strict=True)
         return [strip.gap(spec, width) if strip else unknown for strip, width in strips]
     gaps, step = study_windows(study, film).gaps(spec), spec.height_step
     return [(gap[0] * step, gap[1] * step) if gap else unknown for gap in gaps]
@@ -147,9 +148,9 @@ def _discharges(study, film, rigs, threads):
     def touching(closer):
         thickness = (film["film_thickness"] - closer).clip(min=0.0)
         if study.rig.has_surfaces:
-            given = study.line_spec, study.rollers.length, film, study.boundary_layer, study.seed
             thicker = (thickness / film["film_thickness"]).values.ravel()
-            contact = surface_contact(*given, study.gap, threads, fewer=FEWER, thicker=thicker)
+            choices = {"threads": threads, "fewer": FEWER, "thicker": thicker}
+            contact = surface_contact(RoughPair.of(study), film, **choices)
             return contact["geometric_contact_probability"].values
         windows = study_windows(study, film.assign(film_thickness=thickness))
         return windows.on_pairs(study.line_spec, study.seed, PAIRS, threads)[:, 0].mean(axis=0)

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.ensemble import sample_size, windows_by_force
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import SURFACES
 from lube.grid.film_profiles import six_digits
 from lube.grid.film_responses import with_surface_responses
@@ -81,20 +82,19 @@ def _of_lines(study, inputs, film, slip, reading, threads):
 
     The sample size is for one revolution, and the variances are divided by that of one revolution.
     """
-    contact, lines = inputs["contact"], (study.line_spec, film, study.boundary_layer, study.gap)
-    found = planning.slopes(*lines, study.seed, threads)
+    contact, pair = inputs["contact"], RoughPair.of(study)
+    found = planning.slopes(pair, film, threads)
     size = _sample_size(contact, inputs["film"], slip)
     records = slip, TURNS, study.rig.drift, study.revolutions
-    ratios = planning.line_ratios(*lines, study.seed, *records)
+    ratios = planning.line_ratios(pair, film, *records)
     return found, size, ratios, reading, contact.sizes["realisation"]
 
 
 def _of_surfaces(study, inputs, film, slip, reading, threads):
     """As `_of_lines`, of surfaces; the sample size is that of a revolution of pure rolling."""
     areal = inputs["areal"].sel(slide_to_roll_ratio=slip, drop=True).isel(film_formula=0, drop=True)
-    given = study.line_spec, study.rollers.length, film, study.boundary_layer, study.gap, study.seed
     records = slip, TURNS, study.rig.drift
-    found, size, ratios = planning.on_surfaces(*given, areal, *records, threads)
+    found, size, ratios = planning.on_surfaces(RoughPair.of(study), film, areal, *records, threads)
     return found, size, ratios, planning.reading_of_surfaces(reading, found.probability), SURFACES
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_trace import surface_traces
 from lube.grid.film_responses import with_surface_responses
 from lube.grid.operating_points import rows_at
@@ -29,8 +30,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """
     points, slip = study.trace_points, study.trace_points[0]["slide_to_roll_ratio"]
     film = rows_at(with_surface_responses(inputs), points).transpose("operating_point", ...)
-    choices = study.boundary_layer, study.seed, slip, study.gap, threads
-    found = surface_traces(study.line_spec, study.rollers.length, film, *choices)
+    found = surface_traces(RoughPair.of(study), film, slip, threads)
     # All traces have the same speed, and so the same times.
     times = found["step"].values / film["entrainment_speed"].values[0]
     levels = {name: ("operating_point", film[name].values) for name in CONTACT_DIMS}

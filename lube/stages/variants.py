@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.ehl.response import at_wavelengths
@@ -222,8 +223,8 @@ def _on_surface(variant, film, own, study, threads):
     unknown = np.full(film["film_thickness"].size, np.nan)
     found = {f"{name}{end}": unknown for name in names for end in LIMITS}
     if study.has("surface_response") and variant.gap.is_on_surfaces:
-        choices = study.boundary_layer, study.seed, variant.gap, threads
-        contact = surface_contact(study.line_spec, study.rollers.length, film, *choices)
+        pair = replace(RoughPair.of(study), gap=variant.gap)
+        contact = surface_contact(pair, film, threads)
         found = {name: contact[name].transpose(*POINT_DIMS).values.ravel() for name in found}
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = found[names[0]] / own[names[0]]

@@ -8,11 +8,11 @@ from whole_surfaces import Filtered, Unchanged, answered_strip, drawn_waves
 
 from lube.contact import surface_strip
 from lube.contact.pair_scatter import pair_deviation
+from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import StripFilm, curvature_moments, surface_moments
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import SURFACES as SAMPLED
 from lube.contact.surface_strip import surface_contact
-from lube.grid.gap import PLAIN
 from lube.grid.operating_points import surface_speeds
 from lube.inference.planning import half_widths, on_surfaces, relative_error
 from lube.statistics.curves import contact_curve, film_interval
@@ -226,14 +226,14 @@ def test_films_read_from_single_pairs_scatter_as_planned(
     films = {"film_thickness": ("film", np.array([2.6, 3.0]) * np.sqrt(moments.height))}
     films |= {"contact_half_width": 0.5 * WIDTH, "reduced_modulus": study.rollers.reduced_modulus}
     weak = study.boundary_layer.model_copy(update={"shear_strength": 1.0})
-    given = spec, LENGTH, xr.Dataset(films), weak
+    given = RoughPair(spec, LENGTH, weak, 3), xr.Dataset(films)
     strips = [StripFilm.flat(film, 0.5 * WIDTH) for film in films["film_thickness"][1]]
-    contact = surface_contact(*given, 3)
+    contact = surface_contact(*given)
     share = contact["breakthrough_probability"].values
     each = zip(share, strips, strict=True)
     scatter = [pair_deviation(p, *one.common(spec, LENGTH), side) for p, one in each]
     contact = contact.assign(pair_deviation=("film", scatter))
-    found, size, ratios = on_surfaces(*given, PLAIN, 3, contact, 0.0, [1.0])
+    found, size, ratios = on_surfaces(*given, contact, 0.0, [1.0])
     error = relative_error(share, size, ratios)
     expected = half_widths(found, np.ones(share.size), error, SAMPLED)[0, 0]
     seen = [shares(rollers, strip.films(surface.spacing[1])) for strip in strips]
@@ -251,7 +251,8 @@ def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
     rms, ratios = np.sqrt(moments.height), np.geomspace(2.0, 5.0, 9)
     films = {"film_thickness": ("film", ratios * rms), "contact_half_width": 0.5 * WIDTH}
     films = xr.Dataset(films | {"reduced_modulus": study.rollers.reduced_modulus})
-    found = surface_contact(spec, LENGTH, films, study.boundary_layer, 3, fewer=2)
+    pair = RoughPair(spec, LENGTH, study.boundary_layer, 3)
+    found = surface_contact(pair, films, fewer=2)
     share, scatter = found["geometric_contact_probability"].values, []
     flat = {ratio: StripFilm.flat(ratio * rms, 0.5 * WIDTH) for ratio in (*ratios, *GAUGED)}
     for ratio, one in zip(ratios, share, strict=True):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_revolution import revolution_contact
 from lube.contact.surface_strip import surface_contact
 from lube.contact.surface_trace import surface_traces
@@ -42,8 +43,9 @@ def make_small(study):
 def test_pairs_of_rollers_touch_as_often_as_sampled_surfaces(study, make_small, layer, gap, lay):
     spec = make_small(**lay)
     film = films(study, spec, [2.6, 3.2], gap=gap)
-    sampled = surface_contact(spec, LENGTH, film, layer, 1, gap, fewer=2)
-    lengths = [revolution_contact(spec, LENGTH, film, layer, (2, k), gap) for k in range(PAIRS)]
+    sampled = surface_contact(RoughPair(spec, LENGTH, layer, 1, gap), film, fewer=2)
+    pair = RoughPair(spec, LENGTH, layer, 2, gap)
+    lengths = [revolution_contact(pair, film, number) for number in range(PAIRS)]
     shares = np.mean(np.array(lengths) > 0.0, axis=-1)
     mean, _, upper = mean_interval(shares)
     expected, high = (sampled[f"breakthrough_probability{end}"].values for end in ("", "_upper"))
@@ -57,9 +59,10 @@ def test_pairs_of_rollers_touch_as_often_as_sampled_surfaces(study, make_small, 
 def test_contact_is_about_as_long_as_on_traces(study, make_small, layer):
     spec = make_small()
     film = films(study, spec, [1.5, 2.0])
-    traces = [surface_traces(spec, LENGTH, film, layer, seed) for seed in range(15)]
+    traces = [surface_traces(RoughPair(spec, LENGTH, layer, seed), film) for seed in range(15)]
     traced = np.array([trace["contact_length"].mean("step").values for trace in traces])
-    lengths = [revolution_contact(spec, LENGTH, film, layer, (2, k)).mean(axis=1) for k in range(4)]
+    pair = RoughPair(spec, LENGTH, layer, 2)
+    lengths = [revolution_contact(pair, film, number).mean(axis=1) for number in range(4)]
     _, lower, upper = mean_interval(traced)
     # The paraboloids of merging summits cover less than their contact.
     assert (np.mean(lengths, axis=0) > 0.8 * lower).all()
@@ -69,8 +72,9 @@ def test_contact_is_about_as_long_as_on_traces(study, make_small, layer):
 def test_threads_change_nothing_and_pairs_differ(study, make_small, layer):
     spec = make_small()
     film = films(study, spec, [2.0])
-    one, two = (revolution_contact(spec, LENGTH, film, layer, (2, 0), PLAIN, n) for n in (1, 3))
-    other = revolution_contact(spec, LENGTH, film, layer, (2, 1))
+    pair = RoughPair(spec, LENGTH, layer, 2)
+    one, two = (revolution_contact(pair, film, 0, threads) for threads in (1, 3))
+    other = revolution_contact(pair, film, 1)
     np.testing.assert_array_equal(one, two)
     assert one.shape == other.shape and not np.array_equal(one, other)
 
@@ -80,7 +84,8 @@ def test_contact_under_an_unknown_film_is_unknown(study, make_small, layer):
     film = films(study, spec, [2.0, 3.0])
     thickness = film["film_thickness"].where(film["film_thickness"] < film["film_thickness"].max())
     unknown = film.assign(film_thickness=thickness)
-    found = revolution_contact(spec, LENGTH, unknown, layer, (2, 0))
+    pair = RoughPair(spec, LENGTH, layer, 2)
+    found = revolution_contact(pair, unknown, 0)
     assert np.isfinite(found[0]).all() and np.isnan(found[1]).all()
     nothing = unknown.isel(operating_point=[1])
-    assert np.isnan(revolution_contact(spec, LENGTH, nothing, layer, (2, 0))).all()
+    assert np.isnan(revolution_contact(pair, nothing, 0)).all()

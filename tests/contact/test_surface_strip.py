@@ -6,6 +6,7 @@ import scipy.ndimage
 from whole_surfaces import Filtered, Unchanged, answered_strip, drawn_waves
 
 from lube.contact import surface_strip
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import StripFilm, strip_probability, surface_contact
 from lube.errors import StudyError
@@ -47,13 +48,13 @@ def test_a_formula_that_flattens_the_roughness_is_refused(spec, film, study):
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[0])
     gap = Gap("computed", "venner-1997")
     with pytest.raises(StudyError, match=r"^roughness_deformation: got venner-1997, need none or"):
-        surface_contact(spec, 0.01, few, study.boundary_layer, SEED, gap)
+        surface_contact(RoughPair(spec, 0.01, study.boundary_layer, SEED, gap), few)
 
 
 def test_a_film_that_is_not_known_has_no_contact_that_is(spec, film, study):
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[0, 4])
     few["film_thickness"] = few["film_thickness"].where(few["force"] > 1000.0)
-    found = surface_contact(spec, 0.01, few, study.boundary_layer, SEED)
+    found = surface_contact(RoughPair(spec, 0.01, study.boundary_layer, SEED), few)
     for values in found.values():
         assert values.notnull().values.ravel().tolist() == [False, True]
 
@@ -61,7 +62,7 @@ def test_a_film_that_is_not_known_has_no_contact_that_is(spec, film, study):
 def test_ridges_as_long_as_the_rollers_touch_as_often_as_their_line(make_spec, film, study):
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[2, 4])
     spec = make_spec(50_000, lay_ratio=700.0, lay_angle=90.0)
-    found = surface_contact(spec, 1e-3, few, study.boundary_layer, SEED)
+    found = surface_contact(RoughPair(spec, 1e-3, study.boundary_layer, SEED), few)
     of_lines = pair_probabilities(spec, few, study.boundary_layer, SEED, 0.0)
     name = "geometric_contact_probability"
     line = of_lines[name].mean("pair")
@@ -80,9 +81,9 @@ def test_a_stretched_surface_has_the_contacts_of_the_isotropic_one(
     stretched = few.assign(contact_half_width=longer[0] * few["contact_half_width"])
     layer, names = study.boundary_layer, ["geometric_contact_probability", "contacts"]
     choices = {"fewer": 4, "weaker": 2.0}
-    one = surface_contact(make_spec(50_000), 0.01, few, layer, SEED, **choices)
+    one = surface_contact(RoughPair(make_spec(50_000), 0.01, layer, SEED), few, **choices)
     spec = make_spec(50_000, lay_ratio=3.0, lay_angle=angle)
-    other = surface_contact(spec, longer[1] * 0.01, stretched, layer, SEED, **choices)
+    other = surface_contact(RoughPair(spec, longer[1] * 0.01, layer, SEED), stretched, **choices)
     for name in names:
         np.testing.assert_allclose(one[name], other[name], rtol=0.03)
     assert np.all(other["breakthrough_probability"] < 0.9 * one["breakthrough_probability"])
@@ -144,10 +145,10 @@ def compare(spec, surfaces, surface, film, count):
     sharp = film.breaking_curvatures(surface.spacing[1], curvature) / spec.height_step
     rng = np.random.default_rng(8)
     counted = np.array([searched(surfaces, surface, films, sharp, rng) for _ in range(count)])
-    length = (ROWS + 0.5) * surface.spacing[0]
+    pair = RoughPair(spec, (ROWS + 0.5) * surface.spacing[0], layer=None, seed=SEED)
     strips = [film], np.array([False])
     seeds = surface_strip.surface_seeds(SEED, surface_strip.SURFACES)
-    found = surface_strip._sampled(spec, surface, *strips, [curvature], length, seeds)
+    found = surface_strip._sampled(pair, surface, *strips, [curvature], seeds, threads=1)
     names = ["geometric_contact_probability", "breakthrough_probability"]
     names += ["contacts", "breakthroughs"]
     for name, values in zip(names, counted.reshape(count, 4).T, strict=True):
@@ -174,7 +175,7 @@ def test_a_layer_that_often_holds_is_judged_on_all_strips_where_contact_is_certa
     layer = study.boundary_layer.model_copy(update={"shear_strength": 2e5})
 
     def found():
-        return surface_contact(make_spec(30_000), 10e-3, film, layer, SEED)
+        return surface_contact(RoughPair(make_spec(30_000), 10e-3, layer, SEED), film)
 
     few = found()
     monkeypatch.setattr(surface_strip, "MANY", np.inf)  # so that contact is nowhere certain
@@ -187,7 +188,7 @@ def test_a_layer_that_no_sampled_contact_breaks_has_an_upper_limit(study, make_s
     oil = lubricant_table(study.lubricants, [40.0])
     film = film_table(oil, study.rollers, [800.0], [100.0], ["paper"])
     layer = study.boundary_layer.model_copy(update={"shear_strength": 1e12})
-    found = surface_contact(make_spec(30_000), 10e-3, film, layer, SEED)
+    found = surface_contact(RoughPair(make_spec(30_000), 10e-3, layer, SEED), film)
     for name in ("breakthrough_probability", "breakthroughs"):
         assert found[name] == found[f"{name}_lower"] == 0.0
         assert 0.0 < found[f"{name}_upper"] < 1e-3 * found["contacts"]

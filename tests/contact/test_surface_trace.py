@@ -1,11 +1,14 @@
 """Traces of contacts along the rollers: step by step by hand, then their mean as sampled."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.ndimage
 import xarray as xr
 
 from lube.contact import surface_trace
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import (
     mean_breaking_curvature,
     smallest_contacts,
@@ -42,14 +45,13 @@ def films(study, spec, ratios, slip=0.0, gap=PLAIN):
 def test_contacts_are_those_of_surfaces_moved_by_hand(study, make_spec, slip, lay):
     spec = make_spec(50_000, **lay)
     film = films(study, spec, [2.0])
-    found = surface_traces(spec, LENGTH, film, study.boundary_layer, 3, slip).isel(
-        operating_point=0
-    )
+    pair = RoughPair(spec, LENGTH, study.boundary_layer, 3)
+    found = surface_traces(pair, film, slip).isel(operating_point=0)
     width = 2.0 * film["contact_half_width"].item()
-    strips = strip_films(spec, film, PLAIN)
+    strips = strip_films(pair, film)
     surface = rough_surface(spec, width, tuple(smallest_contacts(spec, strips)[0]))
     rows, columns = int(LENGTH / surface.spacing[0]), int(width / surface.spacing[1])
-    sharp = mean_breaking_curvature(film["reduced_modulus"].item(), study.boundary_layer)
+    sharp = mean_breaking_curvature(pair, film)
     near = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
     if surface.diagonal:
         near[0, 0] = near[2, 2] = 1
@@ -105,14 +107,16 @@ def test_the_strip_touches_as_often_as_by_sampling(study, make_spec, monkeypatch
     monkeypatch.setattr(film_responses, "ANGLES", np.arange(0.0, 91.0, 45.0))
     spec = make_spec(50_000)
     film, layer = films(study, spec, [2.0, 2.3], slip, gap), study.boundary_layer
-    strips = strip_films(spec, film, gap)  # the same in all traces
+    pair = RoughPair(spec, LENGTH, layer, 1, gap)
+    strips = strip_films(pair, film)  # the same in all traces
     monkeypatch.setattr(surface_trace, "strip_films", lambda *_: strips)
-    traces = [surface_traces(spec, LENGTH, film, layer, seed, slip, gap) for seed in range(TRACES)]
+    pairs = [replace(pair, seed=seed) for seed in range(TRACES)]
+    traces = [surface_traces(each, film, slip) for each in pairs]
     found = [each["contacts"].mean("step").values for each in traces]
     touched = [(each["contacts"] > 0.0).mean("step").values for each in traces]
     # On a quarter of the surfaces it is still three times as certain as the mean of the traces.
     fewer = 4 if gap.is_answered else 1
-    sampled = surface_contact(spec, LENGTH, film, layer, 1, gap, fewer=fewer)
+    sampled = surface_contact(pair, film, fewer=fewer)
     for name, values in (("contacts", found), ("geometric_contact_probability", touched)):
         half = 0.5 * (sampled[f"{name}_upper"] - sampled[f"{name}_lower"]).values
         error = np.hypot(np.std(values, axis=0, ddof=1) / TRACES**0.5, 0.5 * half)
@@ -125,7 +129,7 @@ def test_the_strip_touches_as_often_as_by_sampling(study, make_spec, monkeypatch
 def test_a_film_that_is_not_known_has_no_trace(study, make_spec):
     spec = make_spec(50_000)
     film = films(study, spec, [2.0, np.nan])
-    found = surface_traces(spec, LENGTH, film, study.boundary_layer, 3)
+    found = surface_traces(RoughPair(spec, LENGTH, study.boundary_layer, 3), film)
     for values in found.data_vars.values():
         assert values.isel(operating_point=0).notnull().all()
         assert values.isel(operating_point=1).isnull().all()

@@ -1,11 +1,14 @@
 """Surfaces at the records: values of the grid, direct sampling, and the inverse of a curve."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
 from experiments import experiment_of
 from made import made, on_few_surfaces
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_records import (
@@ -71,8 +74,7 @@ def test_records_beside_the_grid_are_sampled_at_their_film(plain, found):
     study, _ = plain
     oil = lubricant_table(study.lubricants, [40.0])
     film = film_table(oil, study.rough_rollers, [900.0], [100.0], ["paper"], **study.film_model)
-    choices = study.line_spec, study.rollers.length, film, study.boundary_layer, study.seed
-    direct = surface_contact(*choices)
+    direct = surface_contact(RoughPair.of(study), film)
     for name, limit in zip(NUMBERS, LIMITS, strict=True):
         expected = direct[f"breakthrough_probability{limit}"].item()
         np.testing.assert_array_equal(found[1][name].values[[1, 3]], expected)
@@ -84,8 +86,7 @@ def test_curves_are_those_of_other_films_at_the_same_width(plain, found):
     first = first.isel(record=[0])
     ratios = surfaces["curve_lambda_ratio"].values[2:5]
     film = first.assign(film_thickness=("film", ratios * first["composite_rms_roughness"].item()))
-    choices = study.line_spec, study.rollers.length, film, study.boundary_layer, 7
-    direct = surface_contact(*choices)
+    direct = surface_contact(replace(RoughPair.of(study), seed=7), film)
     for row, share in enumerate(direct["breakthrough_probability"].values.ravel(), 2):
         here = surfaces.isel(record=0, curve_lambda_ratio=row)
         errors = [

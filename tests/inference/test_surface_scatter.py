@@ -7,12 +7,18 @@ from experiments import experiment_of
 from whole_surfaces import answered_strip
 
 from lube.contact.pair_scatter import pair_deviation
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import strip_films, surface_contact
 from lube.grid.gap import PLAIN, Gap
 from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_scatter import surface_scatter
 
 SHARES, ANSWERED = np.array([0.05, 0.4, 0.4]), Gap("flat", "computed")
+
+
+@pytest.fixture
+def layer(study):
+    return study.boundary_layer
 
 
 def scatter(study, **records):
@@ -24,8 +30,7 @@ def scatter(study, **records):
 
 def of_records(study, experiment, films, shares):
     motion = (experiment[name].values for name in ("slide_to_roll_ratio", "turns"))
-    given = study.line_spec, study.rollers.length, films, shares, *motion
-    return surface_scatter(*given, study.gap, study.rig.drift)
+    return surface_scatter(RoughPair.of(study), films, shares, *motion, study.rig.drift)
 
 
 def with_rollers(study, **second):
@@ -68,11 +73,12 @@ def test_a_small_rough_roller_scatters_as_its_own_turns_do(busy_study):
     for turns in (1.0, 50.0):
         np.testing.assert_allclose(scatter(small, turns=turns), 1.0, rtol=0.1)
     film = {"film_thickness": ("film", [7e-6]), "contact_half_width": 2e-4}
-    given = xr.Dataset(film | {"reduced_modulus": 1e11}), busy_study.boundary_layer, 1
-    found = surface_contact(small.line_spec, 1e-3, *given)
+    film = xr.Dataset(film | {"reduced_modulus": 1e11})
+    pair = RoughPair(small.line_spec, 1e-3, busy_study.boundary_layer, 1)
+    found = surface_contact(pair, film)
     share, (strip,) = (
         found["breakthrough_probability"].item(),
-        strip_films(small.line_spec, given[0], PLAIN),
+        strip_films(pair, film),
     )
     own = small.line_spec.points[1] * small.line_spec.spacing
     expected = pair_deviation(share, *strip.common(small.line_spec, 1e-3), own)
@@ -88,15 +94,16 @@ def test_a_film_that_is_not_known_has_no_scatter(busy_study):
     assert np.isnan(found).tolist() == [False, True, False]
 
 
-def test_ridges_across_rolling_need_no_longer_way_to_a_new_alignment(make_spec):
+def test_ridges_across_rolling_need_no_longer_way_to_a_new_alignment(make_spec, layer):
     """Stretched along the rollers, as the strip is, they touch as the surface without ridges."""
     film = xr.Dataset({"film_thickness": ("record", [7e-7]), "contact_half_width": 1.5e-4})
     # In each turn the slower surface stays behind by one and a half longest wavelengths.
-    motion = np.array([0.4]), np.array([0.002]), np.array([[1.0], [20.0]]), PLAIN, 0.0
+    motion = np.array([0.4]), np.array([0.002]), np.array([[1.0], [20.0]]), 0.0
     found = []
     for ratio in (1.0, 4.0):
         spec = make_spec(50_000, longest_wavelength=4e-4, lay_ratio=ratio, lay_angle=90.0)
-        found.append(surface_scatter(spec, ratio * 1e-3, film, *motion))
+        pair = RoughPair(spec, ratio * 1e-3, layer, 1)
+        found.append(surface_scatter(pair, film, *motion))
     np.testing.assert_allclose(*found, rtol=0.03)
     assert found[0][1] < 0.5
 
@@ -107,10 +114,11 @@ def test_films_with_a_shape_have_a_scatter_too(busy_study, film_shape):
     assert np.all(scatter(study, turns=100.0, slide_to_roll_ratio=0.37) < 0.6)
 
 
-def test_contacts_that_the_oil_ends_are_hardly_shorter_with_slip(study, make_spec):
+def test_contacts_that_the_oil_ends_are_hardly_shorter_with_slip(study, make_spec, layer):
     spec = make_spec(50_000, longest_wavelength=4e-4, shortest_wavelength="16 points")
     _, film = answered_strip(study, spec, "flat", 0.5, 2.2)
     record = film.expand_dims("record"), np.array([0.3]), np.array([0.5]), np.array([1.0])
-    drawn, answered = (surface_scatter(spec, 0.01, *record, gap, 0.0) for gap in (PLAIN, ANSWERED))
+    pairs = [RoughPair(spec, 0.01, layer, 1, gap) for gap in (PLAIN, ANSWERED)]
+    drawn, answered = (surface_scatter(pair, *record, 0.0) for pair in pairs)
     # A turn of the faster surface is shorter than one of pure rolling.
     assert 1.25 * drawn < answered < 1.25

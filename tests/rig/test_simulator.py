@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lube.contact.rough_pair import drawn, roughness_batch
+from lube.contact.rough_pair import RoughPair, drawn, roughness_batch
 from lube.contact.surface_revolution import revolution_contact
 from lube.grid.gap import Gap
 from lube.grid.operating_points import operating_points
@@ -141,9 +141,8 @@ def test_surfaces_turn_as_they_were_drawn(finer, with_rig, points):
     several = several.model_copy(update={"boundary_layer": weak})
     spec, drawn = several.line_spec, []
     for number in several.rig_realisations:
-        seeds = (several.seed, number)
-        known = spec, several.rollers.length, points, several.boundary_layer, seeds
-        drawn.append(whole_points(revolution_contact(*known), spec))
+        lengths = revolution_contact(RoughPair.of(several), points, number)
+        drawn.append(whole_points(lengths, spec))
     assert np.any(drawn) and not np.array_equal(*drawn)
     for pair, number, revolution in run(several, points):
         whole, turn = drawn[pair][number], revolution.seed[3]
