@@ -43,8 +43,9 @@ class Stage:
         Further attributes of the study that the file depends on; its ``config`` leaves them out.
     priority : int
         Jobs of a higher priority are started first.
-    parallel : bool
-        Whether a job uses all cores; one of ``benchmark`` always does.
+    parallel : bool or str
+        Whether a job uses all cores, or the attribute of the study with which it does; one of
+        ``benchmark`` always does.
     in_batches : str
         Whether it joins batches, and of what: ``realisations`` or ``samples``.
     """
@@ -60,7 +61,7 @@ class Stage:
     written: str = ""
     parameters: tuple[str, ...] = ()
     priority: int = 0
-    parallel: bool = False
+    parallel: bool | str = False
     in_batches: str = ""
 
     @property
@@ -219,6 +220,7 @@ _ROWS = (
         },
         same_values=("roughness",),  # it draws the lines of the simulated rig's rollers
         only_with=("conducts", "has_records"),
+        parallel="rig.has_surfaces",
         written="measured_files",
         priority=2,
     ),
@@ -230,6 +232,7 @@ _ROWS = (
         values=_named("traces"),
         same_values=("experiment",),
         only_with=(*_LINE, "conducts"),
+        parallel="rig.has_surfaces",
     ),
     Stage(
         "surface_records",

@@ -278,6 +278,11 @@ class Study(StrictModel):
         """List what a stage needs (`only_with`) and the study does not have."""
         return [name for name in STAGES[stage].only_with if not attrgetter(name)(self)]
 
+    def is_parallel(self, stage: str) -> bool:
+        """Whether a job of a stage uses all cores."""
+        parallel = STAGES[stage].parallel
+        return attrgetter(parallel)(self) if isinstance(parallel, str) else parallel
+
     @property
     def batches(self) -> range:
         """First realisation of each batch."""

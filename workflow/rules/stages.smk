@@ -21,7 +21,7 @@ for stage in STAGES.values():
             benchmark:
                 result(f"benchmarks/{stage.name}.tsv")
             priority: stage.priority
-            threads: workflow.cores if stage.parallel else 1
+            threads: workflow.cores if STUDY.is_parallel(stage.name) else 1
             params:
                 study=FILES.stage_inputs(stage.name),
             message:
