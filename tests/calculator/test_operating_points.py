@@ -160,6 +160,21 @@ def test_the_most_complete_model_is_asked_for_by_name(rollers, oil):
     assert np.isnan(found["surface_expected_breakthroughs"])
 
 
+def test_what_cannot_touch_is_refused_before_films_are_computed(oil, monkeypatch):
+    monkeypatch.setattr("lube.calculator.operating_points.film_at", None)
+    fine = lube.Rollers("10 mm", "0.1 um", shortest_wavelength="1 um")
+    for answer, *given in (
+        (lube.contact_probability, fine, oil, *POINT.values()),
+        (lube.duty, [POINT], fine, oil),
+        (lube.required_speed, fine, oil, "400 N", "60 degC"),
+    ):
+        with pytest.raises(LubeError, match="got a shortest wavelength of 1 µm, too short for a"):
+            answer(*given, **lube.COMPLETE)
+    heavy = POINT | {"force": "1 GN"}
+    with pytest.raises(LubeError, match="force: the contact"):
+        lube.contact_probability(fine, oil, **heavy, film_shape="computed")
+
+
 def test_contact_that_no_realisation_sees_has_a_probability(rollers, oil):
     cold = POINT | {"force": "100 N", "speed": "300 rpm", "temperature": "40 degC"}
     found = lube.contact_probability(rollers, oil, **cold, realisations=2)
@@ -246,6 +261,10 @@ def test_threads_leave_the_options_of_xarray_as_they_were(rollers, oil):
             "roughness_deformation: got venner-1997, need none or computed for contact",
         ),
         ({"slide_to_roll_ratio": 3}, "slide_to_roll_ratio: got 3, need a value"),
+        (
+            {"slide_to_roll_ratio": -0.1, "roughness_deformation": "venner-1997"},
+            "roughness_deformation: got venner-1997 with a slide-to-roll ratio of -0.1, need none",
+        ),
     ],
 )
 def test_a_mistake_is_one_line_that_names_the_argument(rollers, oil, change, message):
