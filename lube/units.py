@@ -223,7 +223,8 @@ def parse_quantity(value: object, target: str) -> float:
     >>> parse_quantity("50 mm", "m")
     0.05
     """
-    number, units = _parts(value, f"a number with its unit, such as '1 {target}'")
+    such = "50 %" if target == "1" else f"1 {target}"
+    number, units = _parts(value, f"a number with its unit, such as '{such}'")
     return float(convert(number, units, target))
 
 

@@ -198,6 +198,10 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         ({"radius": ["a", "b", "c"]}, "points: radius: got 'a', need a number with its unit"),
         ({"note": ["a", "b", np.nan]}, "points: unknown column 'note', need one of"),
         ({"share": [1.0, -1.0, 1.0]}, "points: share: got -1, need a value at least 0"),
+        (
+            {"share": ["1 %", "1 %", 0.7]},
+            "share: got 0.7, need a number with its unit, such as '50 %'",
+        ),
         ({"share": [0.0] * 3}, "points: share: got 0 at all points, need a share above 0"),
         (
             {"speed [rpm]": None},

@@ -210,6 +210,11 @@ def test_what_is_unlikely_to_be_meant_is_remarked_as_by_lube_check(oil, changes,
     assert lube.film(odd, oil, **GRID, film_formula=["paper"]).attrs["remarks"]
 
 
+def test_a_viscosity_in_a_wrong_unit_is_seen_from_the_film(rollers):
+    thick = lube.Oil(viscosity={"40 degC": "68 m^2/s", "100 degC": "9 m^2/s"})
+    assert "most are from 10 nm to 10 µm" in lube.film(rollers, thick, **POINT).attrs["remarks"]
+
+
 def test_one_point_is_a_point_of_the_grid(rollers, oil, busy):
     values = {"film_formula": "paper", "realisations": 32, "seed": busy.study.seed}
     found = lube.contact_probability(rollers, oil, **POINT, **values)
