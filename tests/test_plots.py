@@ -41,6 +41,7 @@ def test_units_are_converted_and_named():
 def test_axis_labels_come_from_the_attributes():
     assert plots.axis_label(quantity(1.0, "um"), "$h_0$") == "Film thickness $h_0$ (µm)"
     assert plots.axis_label(quantity(1.0, "1", "lambda ratio")) == "Lambda ratio"
+    assert plots.axis_label(quantity(1.0, "h-1", "rate")) == "Rate (1/h)"
 
 
 def test_every_level_has_a_colour_and_a_marker_of_its_own():

@@ -110,6 +110,7 @@ def test_the_surface_is_weighted_as_the_line_is(rollers, oil):
         of_points = found[f"surface_breakthrough_probability_pair_{end}"].values
         whole = found[f"whole_surface_probability_pair_{end}"].item()
         assert whole == pytest.approx(0.75 * of_points[0] + 0.25 * of_points[1])
+    assert (found["surface_load_share"] > 0.0).all()
     assert found["whole_surface_probability"] > 0.1 and "whole_probability" not in found
 
 
