@@ -196,6 +196,15 @@ def test_a_logarithmic_axis_has_plain_labels_however_short_it_is():
         assert [text.get_text() for text in shown] == labels
 
 
+def test_plain_labels_along_a_narrow_panel_are_those_that_fit():
+    for number, labels in ((1, 6), (4, 2)):
+        panel = np.ravel(plt.subplots(1, number, figsize=(7.2, 3.0))[1])[0]
+        panel.set(xscale="log", xlim=(0.0018, 0.13))
+        plots.plain_log_ticks(panel.xaxis)
+        ticks = panel.get_xticks()
+        assert np.count_nonzero((ticks > 0.0018) & (ticks < 0.13)) == labels
+
+
 # Saving
 
 
