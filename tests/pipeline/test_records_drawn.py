@@ -46,6 +46,17 @@ def test_figure_18_says_why_records_are_not_folded(files, tmp_path):
     assert "1 sampled too rarely" in title
 
 
+def test_figure_18_draws_measured_records_that_do_not_repeat(files, tmp_path):
+    experiment = xr.load_dataset(files / "experiment.nc").assign_coords(origin="measured")
+    experiment["speed_ratio"][:] = np.nan
+    experiment.to_netcdf(tmp_path / "experiment.nc")
+    inputs = {"experiment": tmp_path / "experiment.nc"}
+    labels = [
+        axes.get_ylabel() for axes in draw(ROOT / "notebooks/fig18_folding.ipynb", inputs).axes
+    ]
+    assert "Repeatability" in labels and "Speed ratio" not in labels
+
+
 @pytest.mark.parametrize("resistances", [(5.0, np.inf), (0.0, 1e6)])
 def test_figure_13_draws_contact_below_the_threshold_alone(files, tmp_path, resistances):
     experiment = xr.load_dataset(files / "experiment.nc").assign_coords(origin="measured")
