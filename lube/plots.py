@@ -308,7 +308,7 @@ def plain_log_ticks(axis: Axis, numbers: Sequence[int] = (1, 2, 5)) -> None:
     axis.set_major_locator(LogLocator(subs=numbers))
     shown = [f"{tick:g}" for tick in axis.get_majorticklocs() if low <= tick <= high]
     panel, inches = axis.axes, _CHARACTER * (len("".join(shown)) + len(shown))
-    width = panel.get_position().width * panel.figure.get_figwidth()
+    width = panel.get_window_extent().width / panel.figure.dpi
     if len(shown) > _MOST_LABELS or (axis.axis_name == "x" and inches > width):
         axis.set_major_locator(LogLocator())
     if len(shown) < 2:

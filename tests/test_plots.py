@@ -198,7 +198,8 @@ def test_a_logarithmic_axis_has_plain_labels_however_short_it_is():
 
 def test_plain_labels_along_a_narrow_panel_are_those_that_fit():
     for number, labels in ((1, 6), (4, 2)):
-        panel = np.ravel(plt.subplots(1, number, figsize=(7.2, 3.0))[1])[0]
+        canvas = plt.figure(figsize=(7.2, 3.0)).subfigures()
+        panel = np.ravel(canvas.subplots(1, number))[0]
         panel.set(xscale="log", xlim=(0.0018, 0.13))
         plots.plain_log_ticks(panel.xaxis)
         ticks = panel.get_xticks()

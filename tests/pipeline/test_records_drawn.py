@@ -1,4 +1,4 @@
-"""Records stand at their own conditions in the figures that show them."""
+"""Figures show records at their own conditions, and operating points of one temperature alone."""
 
 import numpy as np
 import pytest
@@ -70,3 +70,12 @@ def test_figure_13_draws_contact_below_the_threshold_alone(files, tmp_path, resi
     for trace, threshold in below:
         level, drawn = threshold.get_ydata()[0], trace.get_ydata()
         assert (drawn[0::2] < level).all() and (drawn[1::2] > level).all()
+
+
+def test_one_temperature_alone_has_markers_where_others_have_curves(files, tmp_path):
+    paths = {name: tmp_path / f"{name}.nc" for name in ("film", "contact", "tail")}
+    for path in paths.values():
+        xr.load_dataset(files / path.name).isel(temperature=[0]).to_netcdf(path)
+    for number, marker in (("fig02_film", "s"), ("fig07_probability", "_")):
+        figure = draw(ROOT / f"notebooks/{number}.ipynb", paths)
+        assert marker in {line.get_marker() for axes in figure.axes for line in axes.lines}
