@@ -57,6 +57,7 @@ _OTHER_COORDINATES = {
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
 _FOOTNOTE_LINE = 130  # characters that fit below a figure
 _MOST_LABELS = 9  # on a logarithmic axis
+_CHARACTER = 0.07  # width of a character of a tick label, inches
 _SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) |(?<=pair) ")  # also after (a) and "pair"
 
 
@@ -300,14 +301,17 @@ def plain_log_ticks(axis: Axis, numbers: Sequence[int] = (1, 2, 5)) -> None:
         The axis, on a logarithmic scale, with its final limits.
     numbers : sequence of int, optional
         Multiples of the powers of ten that get a label. On an axis too short for two of them,
-        evenly spaced round numbers get one; on an axis of many powers, the powers alone.
+        evenly spaced round numbers get one; on an axis of many powers, or one along which labels
+        would overlap, the powers alone.
     """
     low, high = sorted(axis.get_view_interval())
     axis.set_major_locator(LogLocator(subs=numbers))
-    labels = sum(low <= tick <= high for tick in axis.get_majorticklocs())
-    if labels > _MOST_LABELS:
+    shown = [f"{tick:g}" for tick in axis.get_majorticklocs() if low <= tick <= high]
+    panel, inches = axis.axes, _CHARACTER * (len("".join(shown)) + len(shown))
+    width = panel.get_window_extent().width / panel.figure.dpi
+    if len(shown) > _MOST_LABELS or (axis.axis_name == "x" and inches > width):
         axis.set_major_locator(LogLocator())
-    if labels < 2:
+    if len(shown) < 2:
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

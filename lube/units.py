@@ -34,7 +34,8 @@ _PREFIXED = {"m", "s", "Pa", "V", "Hz", "ohm", "ohm*m"}
 _CUSTOMARY = {"m^2/s": (1e6, "mm²/s"), "1/Pa": (1e9, "1/GPa")}
 SYMBOLS = {"ohm": "Ω", "ohm*m": "Ω m", "degC": "°C", "rpm": "r/min", "Pa*s": "Pa s",
            "kg/m^3": "kg/m³", "um": "µm", "mm2 s-1": "mm²/s", "m2 s-1": "m²/s", "kg m-3": "kg/m³",
-           "m s-1": "m/s", "Pa-1": "1/Pa", "GPa-1": "1/GPa"}  # fmt: skip
+           "m s-1": "m/s", "Pa-1": "1/Pa", "GPa-1": "1/GPa", "s-1": "1/s",
+           "h-1": "1/h", "K-1": "1/K", "m-1": "1/m"}  # fmt: skip
 """Printed form of each unit, from the notation of pint (``kg/m^3``) or of files (``kg m-3``)."""
 
 
@@ -223,7 +224,8 @@ def parse_quantity(value: object, target: str) -> float:
     >>> parse_quantity("50 mm", "m")
     0.05
     """
-    number, units = _parts(value, f"a number with its unit, such as '1 {target}'")
+    such = "50 %" if target == "1" else f"1 {target}"
+    number, units = _parts(value, f"a number with its unit, such as '{such}'")
     return float(convert(number, units, target))
 
 

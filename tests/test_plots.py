@@ -41,6 +41,7 @@ def test_units_are_converted_and_named():
 def test_axis_labels_come_from_the_attributes():
     assert plots.axis_label(quantity(1.0, "um"), "$h_0$") == "Film thickness $h_0$ (µm)"
     assert plots.axis_label(quantity(1.0, "1", "lambda ratio")) == "Lambda ratio"
+    assert plots.axis_label(quantity(1.0, "h-1", "rate")) == "Rate (1/h)"
 
 
 def test_every_level_has_a_colour_and_a_marker_of_its_own():
@@ -193,6 +194,16 @@ def test_a_logarithmic_axis_has_plain_labels_however_short_it_is():
         ticks = zip(axes.get_yticks(), axes.get_yticklabels(), strict=True)
         shown = [text for at, text in ticks if low * (1 - 1e-9) <= at <= high * (1 + 1e-9)]
         assert [text.get_text() for text in shown] == labels
+
+
+def test_plain_labels_along_a_narrow_panel_are_those_that_fit():
+    for number, labels in ((1, 6), (4, 2)):
+        canvas = plt.figure(figsize=(7.2, 3.0)).subfigures()
+        panel = np.ravel(canvas.subplots(1, number))[0]
+        panel.set(xscale="log", xlim=(0.0018, 0.13))
+        plots.plain_log_ticks(panel.xaxis)
+        ticks = panel.get_xticks()
+        assert np.count_nonzero((ticks > 0.0018) & (ticks < 0.13)) == labels
 
 
 # Saving

@@ -76,8 +76,9 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
     """
     with located(name, StudyError):
         numbers = np.asarray(_numbers(value, units), float)
+        came = value if isinstance(value, str) else None
         for number in numbers.ravel():
-            bounded(number, None if units == "1" else units, **limits)
+            bounded(number, None if units == "1" else units, came, **limits)
         if numbers.ndim > 1 or not numbers.size:
             raise LubeError(f"got {shown(value)}, need one number with its unit, or a list of them")
     return xr.DataArray(numbers, {name: numbers} if numbers.ndim else None, [name] * numbers.ndim)

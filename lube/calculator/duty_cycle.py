@@ -22,6 +22,7 @@ from lube.calculator.arguments import (
 from lube.calculator.bands import Assumptions
 from lube.calculator.operating_points import (
     FILM_VARIABLES,
+    check_contact,
     ensemble,
     film_model,
     film_of_oil,
@@ -140,7 +141,9 @@ def duty(
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
     assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)
     assumed.check(given)
-    table = _film(given, rollers, oil, formula, film_model(rollers, choices, slip))
+    pair = rollers.pair.with_radii(given["radius"], given["second_radius"])
+    check_contact(rollers, pair.contact_half_width(given["force"]), choices)
+    table = _film(given, pair, oil, formula, film_model(rollers, choices, slip))
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
     if "line" in choices.models:
         contact = ensemble(table, rollers, realisations, seed, 0.0, gap)
@@ -154,6 +157,8 @@ def duty(
         for name in (*kinds, *_OF_PAIR):
             of_points = parts[f"surface_breakthrough_{name}"]
             whole[f"whole_surface_{name}"] = (of_points * share).sum(skipna=False)
+    if "surface_load_share" in table:
+        parts = parts.assign(surface_load_share=table["surface_load_share"])
     if assumed.wanted:
         samples = assumed.probabilities(given | {"slide_to_roll_ratio": slip})
         parts = parts.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
@@ -206,9 +211,8 @@ def _conditions(columns, rollers):
     }
 
 
-def _film(given, rollers, oil, film_formula, choices):
+def _film(given, pair, oil, film_formula, choices):
     """Film table over ``point``, with the radii of each point."""
-    pair = rollers.pair.with_radii(given["radius"], given["second_radius"])
     table = film_of_oil(oil, pair, given, [film_formula], **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     return table.assign(force=given["force"])

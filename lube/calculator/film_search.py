@@ -29,8 +29,9 @@ AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
 """The same if the film has a shape or the oil changes the lines, which the first look ignores."""
 BROAD = np.exp(np.linspace(-1.0, 1.0, 11))
 """The same for the limits over what is not known exactly."""
-FALLING = 0.9
-"""Share, relative to the largest probability, below which it is well on the falling branch."""
+FALLING = 0.3
+"""Share, relative to the largest probability of the first look, which is rough where contact is
+frequent, below which it is well on the falling branch."""
 OFTEN = 10.0
 """Least number of independent windows with contact, in all realisations, to count contact."""
 FEW_PAIRS = 2

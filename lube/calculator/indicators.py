@@ -10,7 +10,7 @@ from lube.calculator.operating_points import film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.grid.films import FilmGroups
 from lube.grid.indicators import indicators as published
-from lube.physics.indicators import viscosity_ratio
+from lube.physics.indicators import bearing_speed, viscosity_ratio
 from lube.types import Amount, OneAmount
 
 
@@ -35,8 +35,9 @@ def indicators(
     rollers, oil, force, speed, temperature, film_formula
         As in `film`.
     pitch_diameter : str, optional
-        Pitch diameter of a rolling bearing that turns at this speed, such as ``"65 mm"``; its
-        viscosity ratio is found, too.
+        Pitch diameter of a rolling bearing, such as ``"200 mm"``; its viscosity ratio is found,
+        too. `rollers` are its ring and, with the smaller radius, a rolling element; the bearing
+        turns so fast that they have the entrainment speed of this point.
 
     Returns
     -------
@@ -56,9 +57,9 @@ def indicators(
     --------
     >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
     >>> oil = Oil("mobilgear-shc-xmp-320")
-    >>> found = indicators(rollers, oil, "800 N", "100 rpm", "80 degC", pitch_diameter="65 mm")
+    >>> found = indicators(rollers, oil, "800 N", "100 rpm", "80 degC", pitch_diameter="200 mm")
     >>> f"{found.micropitting_film_ratio.item():.2f}, kappa {found.viscosity_ratio.item():.2f}"
-    '1.63, kappa 0.56'
+    '1.63, kappa 1.25'
     >>> resistance = found.rolling_resistance_computed
     >>> f"{resistance.item():.2f} {resistance.attrs['units']}"
     '0.56 N'
@@ -69,8 +70,10 @@ def indicators(
     resistance = scale * groups.of_profiles("rolling_resistance")
     found = table[["lambda_ratio"]].assign(_each_by_name(published(table, resistance, pair)))
     if pitch_diameter is not None:
-        diameter = single(amount("pitch_diameter", pitch_diameter, "m", above=0.0))
-        given = oil.at(table["temperature"])["kinematic_viscosity"], table["speed"], diameter
+        element = 2.0 * min(pair.first.radius, pair.second.radius)
+        diameter = single(amount("pitch_diameter", pitch_diameter, "m", above=element))
+        speed = bearing_speed(table["entrainment_speed"], diameter, element)
+        given = oil.at(table["temperature"])["kinematic_viscosity"], speed, diameter
         found["viscosity_ratio"] = xr.apply_ufunc(viscosity_ratio, *given)
     return with_remarks(found, table, rollers)
 

@@ -31,9 +31,10 @@ from lube.inference.surface_scatter import revolution_size, surface_prediction
 from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.study.rollers import RollerPair
+from lube.study.surface_checks import check_surfaces
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
-from lube.types import Amount, ContactModel, FilmShape, LoadSharing, RoughnessDeformation
+from lube.types import Amount, ContactModel, FilmShape, LoadSharing, RoughnessDeformation, Values
 
 FILM_VARIABLES = (
     "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
@@ -111,12 +112,41 @@ def film_in_si(
     """
     point = conditions(force, speed, temperature, rollers.pair.first.radius)
     formulas = _names(film_formula)
+    if choices:
+        check_contact(rollers, rollers.pair.contact_half_width(point["force"].values), choices)
     model = film_model(rollers, choices or Choices(), slip)
     table = film_of_oil(oil, rollers.pair, point, formulas, **model)
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.assign_coords(force=point["force"], speed=point["speed"])
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
+
+
+def check_contact(rollers: Rollers, half_width: Values, choices: Choices) -> None:
+    """Refuse contacts that lines or surfaces do not have, before films take their time.
+
+    Parameters
+    ----------
+    rollers : Rollers
+        The two rollers.
+    half_width : float or numpy.ndarray
+        Half-widths of the contacts, m.
+    choices : Choices
+        With the contact models.
+
+    Raises
+    ------
+    LubeError
+        As from `lube.study.surface_checks.check_surfaces`; or that a contact is finer than the grid
+        or wider than a roller's perimeter, or that no line stands for the rollers.
+    """
+    spec, widest = rollers.lines, 2.0 * np.max(half_width).item()
+    if "line" in choices.models:
+        for width in (2.0 * np.min(half_width).item(), widest):
+            spec.check_width(width, "force: the contact")
+        spec.check_follows_rolling()
+    if "surface" in choices.models:
+        check_surfaces(spec, rollers.pair.length, widest, choices.gap)
 
 
 def _names(film_formula):
@@ -129,6 +159,7 @@ def _names(film_formula):
 
 def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any]:
     """Arguments of `film_of_oil` for some choices and a slide-to-roll ratio."""
+    choices.gap.check_slip(slip)
     answered = {"line": "answered_lines", "surface": "answered_surfaces"}
     used = choices.models if choices.gap.is_answered else ()
     has_surfaces = "surface" in choices.models or choices.load_sharing != "none"
@@ -358,14 +389,10 @@ def ensemble(
     Raises
     ------
     LubeError
-        If the lines are too short for a contact, or the number of realisations or the seed is not
-        a suitable whole number.
+        If the number of realisations or the seed is not a suitable whole number.
     """
     spec = rollers.lines
     thickness, width = xr.broadcast(table["film_thickness"], 2.0 * table["contact_half_width"])
-    for end in (width.min().item(), width.max().item()):
-        spec.check_width(end, "force: the contact")
-    spec.check_follows_rolling()
     windows = ContactWindows(spec, table, rollers.layer, gap)
 
     def of_realisation(number):

@@ -349,6 +349,11 @@ class Oil:
                 self.record = load_record(name)
         if temperature_range is not None:
             levels = amount("temperature_range", temperature_range, "degC").values.ravel().tolist()
+            if len(levels) != 2:
+                came = f"got {shown(temperature_range)}"
+                raise RecordError(
+                    f"Oil: temperature_range: {came}, need the lowest and the highest"
+                )
             ends = {"lowest": f"{levels[0]!r} degC", "highest": f"{levels[-1]!r} degC"}
             ends["source"] = _SOURCE
             valid = validate(TemperatureRange, ends, "Oil: temperature_range", RecordError)
@@ -409,7 +414,7 @@ def _record(viscosity, density, base, pressure_viscosity):
 
 
 def _points(viscosity):
-    if isinstance(viscosity, str | Path):
+    if isinstance(viscosity, str | Path) and Path(viscosity).is_file():
         return read_viscosity_csv(viscosity)
     if not isinstance(viscosity, Mapping):
         raise RecordError(

@@ -2,7 +2,10 @@
 
 from dataclasses import dataclass
 
-from lube.types import FilmShape, RoughnessDeformation
+import numpy as np
+
+from lube.errors import StudyError
+from lube.types import FilmShape, RoughnessDeformation, Values
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,27 @@ class Gap:
     def is_uniform(self) -> bool:
         """Whether film and lines are alike at all positions in the window; else it is uneven."""
         return not (self.has_shape or self.is_answered)
+
+    def check_slip(self, slide_to_roll_ratio: Values) -> None:
+        """Refuse slip of lines that a formula flattens.
+
+        Parameters
+        ----------
+        slide_to_roll_ratio : float or numpy.ndarray
+            Slide-to-roll ratios.
+
+        Raises
+        ------
+        StudyError
+            With the largest ratio, and what is needed.
+        """
+        most = max(np.ravel(slide_to_roll_ratio), key=abs)
+        if self.is_flattened and most:
+            raise StudyError(
+                f"roughness_deformation: got {self.roughness_deformation} with a slide-to-roll "
+                f"ratio of {most:g}, need none or computed, or a ratio of 0: its formula is for "
+                "pure rolling"
+            )
 
     @property
     def is_plain(self) -> bool:

@@ -114,6 +114,8 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         "2.5 GPa, hardened steel yields from some 3 GPa on, and the model is elastic": (
             pressure > 2.5e9
         ),
+        f"film: {_range(film['film_thickness'], 'm')}; most are from 10 nm to 10 µm, so units may "
+        "be wrong": film["film_thickness"].min() < 2e-9 or film["film_thickness"].max() > 2e-5,
         f"contact width: {waves:.2g} times the shortest wave at the smallest force; with less than "
         "20 times the probability means little": waves < 20.0,
         f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "

@@ -5,6 +5,7 @@ They are kept for comparison: no result of a study uses them. W, U and G are the
 published, within that range only.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -83,6 +84,39 @@ def viscosity_ratio(kinematic_viscosity: Values, speed: Values, pitch_diameter: 
     slow, fast = 45000.0 * speed**-0.83, 4500.0 * speed**-0.5
     needed = np.where(speed < 1000.0, slow, fast) * (1e3 * pitch_diameter) ** -0.5
     return 1e6 * kinematic_viscosity / needed
+
+
+def bearing_speed(entrainment: Values, pitch_diameter: float, element_diameter: float) -> Values:
+    r"""Rotation speed of a rolling bearing, one ring of which stands still.
+
+    .. math:: n = \frac{4 u}{2 \pi D_{pw} (1 - \gamma^2)}, \qquad \gamma = \frac{D_w}{D_{pw}}
+
+    The rollers go round, too, so the ring turns nearly twice as fast as before a roller in a fixed
+    place.
+
+    Parameters
+    ----------
+    entrainment : float or numpy.ndarray
+        Entrainment speed u between ring and rolling element, m/s.
+    pitch_diameter, element_diameter : float
+        Pitch diameter, and diameter of the rolling elements, m.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        Speed of the turning ring, rpm.
+
+    Examples
+    --------
+    An inner ring of 80 mm, seen from the cage:
+
+    >>> speed = bearing_speed(3.0, 0.096, 0.016)
+    >>> cage = 0.5 * speed * (1.0 - 16.0 / 96.0)
+    >>> f"{speed:.0f} rpm, {(speed - cage) / 60.0 * math.pi * 0.08:.2f} m/s"
+    '1228 rpm, 3.00 m/s'
+    """
+    gamma = element_diameter / pitch_diameter
+    return 60.0 * 2.0 * entrainment / (math.pi * pitch_diameter * (1.0 - gamma**2))
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ def lubricant_of(entry: Entry, study: Study) -> str:
     with located(entry.where, DataError):
         lubricants[name].check_temperatures([entry.temperature])
         study.check_window(entry.force)
-        study.check_slip(entry.slide_to_roll_ratio or 0.0)
+        study.gap.check_slip(entry.slide_to_roll_ratio or 0.0)
     return name
 
 

@@ -352,26 +352,6 @@ class Study(StrictModel):
         with located("contact_model: surface"):
             check_surfaces(spec, self.rollers.length, width, self.gap)
 
-    def check_slip(self, slide_to_roll_ratio: float) -> None:
-        """Refuse slip of lines that a formula flattens.
-
-        Parameters
-        ----------
-        slide_to_roll_ratio : float
-            Slide-to-roll ratio.
-
-        Raises
-        ------
-        StudyError
-            With the ratio, and what is needed.
-        """
-        if self.gap.is_flattened and slide_to_roll_ratio:
-            raise StudyError(
-                f"roughness_deformation: got {self.roughness_deformation} with a slide-to-roll "
-                f"ratio of {slide_to_roll_ratio:g}, need none or computed, or a ratio of 0: "
-                "its formula is for pure rolling"
-            )
-
     def check_conductivity(self, needed: str) -> None:
         """Refuse heating at the inlet of an oil whose thermal conductivity is not known.
 
@@ -444,7 +424,7 @@ class Study(StrictModel):
                 self.check_window(force)
             check_sizes(self)
             for ratio in self.slips:
-                self.check_slip(ratio)
+                self.gap.check_slip(ratio)
             if "line" in self.contact_model:
                 self.line_spec.check_follows_rolling()
             if self.has_surfaces:

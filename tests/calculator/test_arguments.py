@@ -44,7 +44,7 @@ def test_one_number_has_no_dimension():
         (800, "force: got 800, need a number with its unit, such as '1 N'"),
         ("800", "force: got '800', need a number with its unit, such as '1 N'"),
         ("800 m", "force: wrong dimension or unit 'm', need a unit of the kind 'N'"),
-        ("-1 N", "force: got -1, need a value above 0 N"),
+        ("-1 N", "force: got -1 N, need a value above 0 N"),
         ((float("nan"), "N"), "force: got nan, need a value above 0 N"),
         ([], "force: got [], need a number with its unit, such as '1 N'"),
         (([], "N"), "force: got ([], 'N'), need one number with its unit, or a list of them"),

@@ -110,6 +110,7 @@ def test_the_surface_is_weighted_as_the_line_is(rollers, oil):
         of_points = found[f"surface_breakthrough_probability_pair_{end}"].values
         whole = found[f"whole_surface_probability_pair_{end}"].item()
         assert whole == pytest.approx(0.75 * of_points[0] + 0.25 * of_points[1])
+    assert (found["surface_load_share"] > 0.0).all()
     assert found["whole_surface_probability"] > 0.1 and "whole_probability" not in found
 
 
@@ -198,6 +199,10 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         ({"radius": ["a", "b", "c"]}, "points: radius: got 'a', need a number with its unit"),
         ({"note": ["a", "b", np.nan]}, "points: unknown column 'note', need one of"),
         ({"share": [1.0, -1.0, 1.0]}, "points: share: got -1, need a value at least 0"),
+        (
+            {"share": ["1 %", "1 %", 0.7]},
+            "share: got 0.7, need a number with its unit, such as '50 %'",
+        ),
         ({"share": [0.0] * 3}, "points: share: got 0 at all points, need a share above 0"),
         (
             {"speed [rpm]": None},

@@ -51,7 +51,7 @@ def test_a_profile_is_of_one_point(rollers, oil):
 def test_a_trace_has_the_shape_and_deformation_of_the_probability(rollers, oil, deformation):
     hot = POINT | {"temperature": "80 degC"}
     choices = {"film_shape": "computed", "roughness_deformation": deformation, "seed": 4}
-    choices |= {"slide_to_roll_ratio": 0.4}
+    choices |= {"slide_to_roll_ratio": 0.0 if deformation == "venner-1997" else 0.4}
     length = lube.trace(rollers, oil, **hot, **choices)["contact_length"]
     counted = lube.contact_probability(rollers, oil, **hot, **choices, realisations=1)
     probability = counted["breakthrough_probability_mean"].item()

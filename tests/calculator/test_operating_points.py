@@ -160,6 +160,21 @@ def test_the_most_complete_model_is_asked_for_by_name(rollers, oil):
     assert np.isnan(found["surface_expected_breakthroughs"])
 
 
+def test_what_cannot_touch_is_refused_before_films_are_computed(oil, monkeypatch):
+    monkeypatch.setattr("lube.calculator.operating_points.film_at", None)
+    fine = lube.Rollers("10 mm", "0.1 um", shortest_wavelength="1 um")
+    for answer, *given in (
+        (lube.contact_probability, fine, oil, *POINT.values()),
+        (lube.duty, [POINT], fine, oil),
+        (lube.required_speed, fine, oil, "400 N", "60 degC"),
+    ):
+        with pytest.raises(LubeError, match="got a shortest wavelength of 1 µm, too short for a"):
+            answer(*given, **lube.COMPLETE)
+    heavy = POINT | {"force": "1 GN"}
+    with pytest.raises(LubeError, match="force: the contact"):
+        lube.contact_probability(fine, oil, **heavy, film_shape="computed")
+
+
 def test_contact_that_no_realisation_sees_has_a_probability(rollers, oil):
     cold = POINT | {"force": "100 N", "speed": "300 rpm", "temperature": "40 degC"}
     found = lube.contact_probability(rollers, oil, **cold, realisations=2)
@@ -193,6 +208,11 @@ def test_what_is_unlikely_to_be_meant_is_remarked_as_by_lube_check(oil, changes,
     found = lube.contact_probability(odd, oil, **POINT, realisations=1)
     assert found.attrs["remarks"] == remarks
     assert lube.film(odd, oil, **GRID, film_formula=["paper"]).attrs["remarks"]
+
+
+def test_a_viscosity_in_a_wrong_unit_is_seen_from_the_film(rollers):
+    thick = lube.Oil(viscosity={"40 degC": "68 m^2/s", "100 degC": "9 m^2/s"})
+    assert "most are from 10 nm to 10 µm" in lube.film(rollers, thick, **POINT).attrs["remarks"]
 
 
 def test_one_point_is_a_point_of_the_grid(rollers, oil, busy):
@@ -246,6 +266,10 @@ def test_threads_leave_the_options_of_xarray_as_they_were(rollers, oil):
             "roughness_deformation: got venner-1997, need none or computed for contact",
         ),
         ({"slide_to_roll_ratio": 3}, "slide_to_roll_ratio: got 3, need a value"),
+        (
+            {"slide_to_roll_ratio": -0.1, "roughness_deformation": "venner-1997"},
+            "roughness_deformation: got venner-1997 with a slide-to-roll ratio of -0.1, need none",
+        ),
     ],
 )
 def test_a_mistake_is_one_line_that_names_the_argument(rollers, oil, change, message):

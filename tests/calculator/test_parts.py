@@ -185,7 +185,7 @@ def test_both_show_themselves_and_travel_between_processes():
             lambda: Oil(viscosity={"40 degC": "30", "80 degC": "9 mm^2/s"}),
             "got '30', need a number",
         ),
-        (lambda: Oil(viscosity="30 mm^2/s"), "30 mm^2/s: cannot be read"),
+        (lambda: Oil(viscosity="30 mm^2/s"), "got '30 mm^2/s', need viscosities by temperature"),
         (lambda: Oil(viscosity=30.0), "viscosity: got 30.0, need viscosities by temperature"),
         (lambda: Oil(viscosity=TWO, base="olive"), "Oil: base: got 'olive', need one of mineral"),
         (lambda: Oil(viscosity=TWO, base=["PAO"]), "Oil: base: got ['PAO'], need one of mineral"),
@@ -206,6 +206,10 @@ def test_both_show_themselves_and_travel_between_processes():
         (
             lambda: Oil(OIL, temperature_range=["120 degC", "20 degC"]),
             "Oil: temperature_range: got 120 to 20 degC, need the lowest first",
+        ),
+        (
+            lambda: Oil(OIL, temperature_range="120 degC"),
+            "Oil: temperature_range: got '120 degC', need the lowest and the highest",
         ),
         (
             lambda: Oil(OIL, temperature_range=120),

@@ -235,6 +235,14 @@ def test_counting_and_sampling_agree_where_both_see(rollers, oil, monkeypatch):
             assert counted[0] < sampled[1] and sampled[0] < counted[1]
 
 
+@pytest.mark.parametrize("rms", ["0.01 um", "0.011 um"])
+def test_rollers_so_smooth_that_the_layer_mostly_holds_have_a_film(rms):
+    """The largest share that they have is hardly above the one asked for."""
+    found = lube.required_film(Rollers("8 mm", rms), "2 kN", share=0.01)
+    limits = [found[f"lambda_ratio{limit}"].item() for limit in ("_lower", "", "_upper")]
+    assert 1.0 < limits[0] < limits[1] < limits[2] < 1.5
+
+
 @pytest.fixture(scope="module")
 def merging():
     """Rollers whose contact falls as the film thins where it is frequent."""
@@ -306,7 +314,7 @@ def test_lines_that_are_not_gaussian_are_counted_only(oil):
         ),
         (
             lambda rollers, oil: lube.required_speed(
-                rollers, oil, ["1 N", "2 N"], "60 degC", share=0.01
+                rollers, oil, ["400 N", "800 N"], "60 degC", share=0.01
             ),
             "force: got 2 values, need one",
         ),

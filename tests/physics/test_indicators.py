@@ -8,6 +8,7 @@ from lube.physics.dimensionless import moes_numbers
 from lube.physics.indicators import (
     LOAD_SHARES,
     RESISTANCE_FORMULAS,
+    bearing_speed,
     micropitting_film,
     rolling_resistance,
     viscosity_ratio,
@@ -44,6 +45,15 @@ def test_the_viscosity_ratio_of_bearings():
     slow, fast = (viscosity_ratio(1e-5, speed, 0.05) for speed in (999.999, 1000.0))
     assert slow == pytest.approx(fast, rel=0.03)
     np.testing.assert_allclose(viscosity_ratio(1e-5, np.array([10.0, 1e4]), 0.2).shape, (2,))
+
+
+def test_a_ring_rolls_on_its_rolling_elements_as_they_turn_around_the_shaft():
+    speed, element, pitch = 1000.0, 0.016, 0.096
+    cage = 0.5 * speed * (1.0 - element / pitch)
+    of_inner = np.pi * (pitch - element) * (speed - cage) / 60.0
+    of_outer = np.pi * (pitch + element) * cage / 60.0
+    assert of_inner == pytest.approx(of_outer)
+    assert bearing_speed(of_inner, pitch, element) == pytest.approx(speed)
 
 
 def test_load_shares_fall_from_all_to_nothing():

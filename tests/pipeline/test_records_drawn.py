@@ -1,4 +1,4 @@
-"""Records stand at their own conditions in the figures that show them."""
+"""Figures show records at their own conditions, and operating points of one temperature alone."""
 
 import numpy as np
 import pytest
@@ -46,6 +46,17 @@ def test_figure_18_says_why_records_are_not_folded(files, tmp_path):
     assert "1 sampled too rarely" in title
 
 
+def test_figure_18_draws_measured_records_that_do_not_repeat(files, tmp_path):
+    experiment = xr.load_dataset(files / "experiment.nc").assign_coords(origin="measured")
+    experiment["speed_ratio"][:] = np.nan
+    experiment.to_netcdf(tmp_path / "experiment.nc")
+    inputs = {"experiment": tmp_path / "experiment.nc"}
+    labels = [
+        axes.get_ylabel() for axes in draw(ROOT / "notebooks/fig18_folding.ipynb", inputs).axes
+    ]
+    assert "Repeatability" in labels and "Speed ratio" not in labels
+
+
 @pytest.mark.parametrize("resistances", [(5.0, np.inf), (0.0, 1e6)])
 def test_figure_13_draws_contact_below_the_threshold_alone(files, tmp_path, resistances):
     experiment = xr.load_dataset(files / "experiment.nc").assign_coords(origin="measured")
@@ -59,3 +70,12 @@ def test_figure_13_draws_contact_below_the_threshold_alone(files, tmp_path, resi
     for trace, threshold in below:
         level, drawn = threshold.get_ydata()[0], trace.get_ydata()
         assert (drawn[0::2] < level).all() and (drawn[1::2] > level).all()
+
+
+def test_one_temperature_alone_has_markers_where_others_have_curves(files, tmp_path):
+    paths = {name: tmp_path / f"{name}.nc" for name in ("film", "contact", "tail")}
+    for path in paths.values():
+        xr.load_dataset(files / path.name).isel(temperature=[0]).to_netcdf(path)
+    for number, marker in (("fig02_film", "s"), ("fig07_probability", "_")):
+        figure = draw(ROOT / f"notebooks/{number}.ipynb", paths)
+        assert marker in {line.get_marker() for axes in figure.axes for line in axes.lines}

@@ -45,7 +45,7 @@ def test_the_calculator_answers_the_same(files):
     oil = lube.Oil("mobilgear-shc-xmp-320")
     point = {"force": 800.0, "speed": 100.0, "temperature": 80.0}
     answer = lube.indicators(
-        rollers, oil, "800 N", "100 rpm", "80 degC", film_formula="paper", pitch_diameter="65 mm"
+        rollers, oil, "800 N", "100 rpm", "80 degC", film_formula="paper", pitch_diameter="200 mm"
     )
     here = files["indicators"].sel(point | {"film_formula": "paper"}).squeeze()
     assert answer["micropitting_film_ratio"].item() == pytest.approx(
@@ -59,13 +59,13 @@ def test_the_calculator_answers_the_same(files):
     share = here["asperity_load_share"].sel(load_share_curve="aihara-1987").item()
     assert answer["asperity_load_share_aihara_1987"].item() == pytest.approx(share)
     assert "load_share_curve" not in answer.dims and len(answer.table()) == 1
-    assert answer["viscosity_ratio"] == pytest.approx(0.56, abs=0.01)
+    assert answer["viscosity_ratio"] == pytest.approx(1.248, abs=0.001)
 
 
 def test_a_bearing_needs_its_pitch_diameter_with_a_unit():
     rollers = lube.Rollers(radius="50 mm", rms_roughness="0.2 um")
     point = lube.Oil("mobilgear-shc-xmp-320"), "800 N", "100 rpm", "80 degC"
     assert "viscosity_ratio" not in lube.indicators(rollers, *point)
-    for given, message in (("65", "need a number with its unit"), ("-1 mm", "above 0")):
+    for given, message in (("65", "need a number with its unit"), ("65 mm", "above 0.1 m")):
         with pytest.raises(lube.LubeError, match=f"^pitch_diameter: .*{message}"):
             lube.indicators(rollers, *point, pitch_diameter=given)

@@ -138,5 +138,5 @@ def test_drawn_waves_are_divided_among_the_rollers_by_their_spectra(make_spec):
 
 def test_a_band_too_wide_for_a_grid_is_refused(make_spec):
     wide = make_spec(1_000_000, shortest_wavelength=1e-6)
-    with pytest.raises(DataError, match=r"roughness: got a shortest wavelength of 1e-06 m"):
+    with pytest.raises(DataError, match=r"roughness: got a shortest wavelength of 1 µm"):
         rough_surface(wide.model_copy(update={"q_min": wide.q_min / 10.0}))
