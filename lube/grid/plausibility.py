@@ -105,7 +105,8 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         int((share > limit).sum()) * lines.follows_rolling for limit in (0.1, 1.0)
     )
     more = f"at {overloaded} more than all of it, " if overloaded else ""
-    rubs, bends = int(rubbing(film).sum()), int(deformed(film).sum())
+    rubs = int(rubbing(film).sum())
+    bends = int((deformed(film) | deformed(film, film)).sum())  # lines or surfaces
     found = {
         f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel 210 GPa": (
             min(moduli) < 1e9 or max(moduli) > 1.2e12

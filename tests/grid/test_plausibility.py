@@ -33,13 +33,14 @@ def test_the_contact_model_finds_the_expected_share_of_the_load(study, film, mak
     assert np.abs(distance).max() < 4.0
 
 
-def test_roughness_that_the_oil_changes_too_much_is_remarked(study, film):
+@pytest.mark.parametrize("name", ["rms_deformation", "surface_rms_deformation"])
+def test_roughness_that_the_oil_changes_too_much_is_remarked(study, film, name):
     question = study.line_spec, study.rollers
     assert not any("the oil changes it" in line for line in remarks(film, *question))
     one = film["film_thickness"].isel(film_formula=0)
     changed = xr.zeros_like(one)
     changed[dict.fromkeys(one.dims, 0)] = 0.2 * one.max()
-    lines = remarks(film.assign(rms_deformation=changed), *question)
+    lines = remarks(film.assign({name: changed}), *question)
     said = f"roughness: at 1 of {one.size} operating points the oil changes it"
     assert any(line.startswith(said) for line in lines)
 
