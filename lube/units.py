@@ -301,7 +301,7 @@ def with_unit(value: float, unit: str, digits: int = 17) -> str:
         factor, symbol = _CUSTOMARY[unit]
         return f"{value * factor:.6g} {symbol}"
     prefix = ""
-    if unit in _PREFIXED and value:
+    if unit in _PREFIXED and 0.0 < abs(value) < math.inf:
         # Roughness is customarily given in micrometres: 0.2 µm reads better than 200 nm.
         size = abs(value) * (10.0 if unit == "m" and abs(value) < 1e-6 else 1.0)
         power = 3 * math.floor(math.log10(size * (1.0 + 1e-9)) / 3)

@@ -277,6 +277,9 @@ def _one_of_two(given, model, name, short):
 
 def _metres(name, length):
     """Check a length and write it as the models of a study read it."""
+    if str(length).endswith("points"):  # which would be those of a printer
+        needed = "need a length: only a study counts in points of its grid"
+        raise StudyError(f"{name}: got {shown(length)}, {needed}")
     return f"{amount(name, length, 'm', above=0.0).item()!r} m"
 
 

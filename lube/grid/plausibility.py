@@ -98,6 +98,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     moduli = rollers.first.young_modulus, rollers.second.young_modulus
     width, shortest = 2.0 * film["contact_half_width"].min().item(), 2.0 * math.pi / lines.q_max
     pressure = film["hertz_pressure"].max().item()
+    films = film["film_thickness"]
     waves, points = width / shortest, shortest / lines.spacing
     share = expected_load_share(film, rollers)
     # No line stands for surfaces whose ridges run along rolling.
@@ -115,8 +116,9 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         "2.5 GPa, hardened steel yields from some 3 GPa on, and the model is elastic": (
             pressure > 2.5e9
         ),
-        f"film: {_range(film['film_thickness'], 'm')}; most are from 10 nm to 10 µm, so units may "
-        "be wrong": film["film_thickness"].min() < 2e-9 or film["film_thickness"].max() > 2e-5,
+        f"film: {_range(films, 'm')}; most are from 10 nm to 10 µm, so units may be wrong": (
+            films.min() < 2e-9 or films.max() > 2e-5
+        ),
         f"contact width: {waves:.2g} times the shortest wave at the smallest force; with less than "
         "20 times the probability means little": waves < 20.0,
         f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "
@@ -135,5 +137,6 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
 
 
 def _range(values, unit=""):
-    ends = (with_unit(end(values), unit, 3) for end in (np.nanmin, np.nanmax))
+    # Unknown values are left out.
+    ends = (with_unit(end.reduce(np.ravel(values)), unit, 3) for end in (np.fmin, np.fmax))
     return " to ".join(dict.fromkeys(ends))

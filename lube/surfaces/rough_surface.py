@@ -23,7 +23,6 @@ from lube.errors import DataError
 from lube.surfaces.lay import extents, stretched, unstretched
 from lube.surfaces.synthetic import LineSpecLike, amplitudes_across_lay
 from lube.types import Array, Pair
-from lube.units import with_unit
 
 POINTS_PER_WAVE = 5
 """Grid points in the shortest wavelength."""
@@ -236,12 +235,10 @@ def surface_grid(
             most = min(side / times / waves, side / times - width) / longest
             own = max(2.0 * math.pi / line.q_min for line in spec.lines)
             # Rounded down, so that the length does.
-            longest = with_unit(0.995 * most * own, "m", 3)
-            shorter = f", or a longest of {longest}" if most > 0.0 else ""
+            shorter = f", or a longest of {995.0 * most * own:.3g} mm" if most > 0.0 else ""
             raise DataError(
-                f"roughness: got a shortest wavelength of {with_unit(shortest, 'm', 3)}, too short "
-                f"for a surface of {with_unit(side, 'm', 3)}, need one {times:.3g} times as "
-                f"long{lay}{shorter}"
+                f"roughness: got a shortest wavelength of {1e6 * shortest:.3g} µm, too short for a "
+                f"surface of {1e3 * side:.3g} mm, need one {times:.3g} times as long{lay}{shorter}"
             )
         sides.append(side)
         spacings.append(spacing)

@@ -148,6 +148,10 @@ def test_both_show_themselves_and_travel_between_processes():
     ("make", "message"),
     [
         (lambda: Rollers("50", "0.2 um"), "Rollers: radius: got '50', need a number with its unit"),
+        (
+            lambda: Rollers("50 mm", "0.2 um", shortest_wavelength="10 points"),
+            "shortest_wavelength: got '10 points', need a length",
+        ),
         (lambda: Rollers("50 mm", "0.2 um", "1"), "length: got '1', need a number with its unit"),
         (
             lambda: Rollers("50 mm", "0.2 um", second={"raduis": "3 mm"}),
