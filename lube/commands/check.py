@@ -101,8 +101,8 @@ def _expected_run(study, points):
     """Estimate time and memory from those of the paper's study.
 
     A million points of a line take some 0.7 ms at an operating point in pure rolling, and 0.9 s at
-    a slide-to-roll ratio of 1. Surfaces take 2 s at each point, or 9 s where the oil answers them.
-    Those of the rig, with five grid points in the shortest wave, take 60 ns for each grid point, or
+    a slide-to-roll ratio of 1. Surfaces take 2 s at each point, or 9 s where the oil answers them,
+    and three times as long again for a curve at each record. Those of the rig, with five grid points in the shortest wave, take 60 ns for each grid point, or
     300 ns, and the other jobs, most of all figures, 90 s.
     """
     size = study.roughness.points / 1e6
@@ -112,7 +112,8 @@ def _expected_run(study, points):
     if study.has("contact"):
         seconds += study.realisations * size * (0.3 + runs)
     if study.has_surfaces:
-        seconds += points * (9.0 if study.gap.is_answered else 2.0)
+        each = 9.0 if study.gap.is_answered else 2.0
+        seconds += points * each * (4.0 if study.compares_surfaces else 1.0)
     if study.rig.has_surfaces:
         spec, length = study.line_spec, study.rollers.length
         spacing = min(line.shortest_wavelength for line in spec.lines) / 5.0
