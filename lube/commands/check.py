@@ -102,8 +102,9 @@ def _expected_run(study, points):
 
     A million points of a line take some 0.7 ms at an operating point in pure rolling, and 0.9 s at
     a slide-to-roll ratio of 1. Surfaces take 2 s at each point, or 9 s where the oil answers them,
-    and three times as long again for a curve at each record. Those of the rig, with five grid points in the shortest wave, take 60 ns for each grid point, or
-    300 ns, and the other jobs, most of all figures, 90 s.
+    and three times as long again for a curve at each record. Those of the rig, with five grid
+    points in the shortest wave, take 60 ns for each grid point, or 300 ns, and the other jobs, most
+    of all figures, 90 s.
     """
     size = study.roughness.points / 1e6
     slips = sum(7e-4 + 0.9 * abs(ratio) for ratio in study.slips) / len(study.slips)
