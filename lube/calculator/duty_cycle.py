@@ -136,23 +136,23 @@ def duty(
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
     choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
-    gap = choices.gap
     check_realisations(realisations, seed)
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
     assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)
     assumed.check(given)
-    pair = rollers.pair.with_radii(given["radius"], given["second_radius"])
-    check_contact(rollers, pair.contact_half_width(given["force"]), choices)
-    table = _film(given, pair, oil, formula, film_model(rollers, choices, slip))
+    turning = rollers.pair.with_radii(given["radius"], given["second_radius"])
+    check_contact(rollers, turning.contact_half_width(given["force"]), choices)
+    table = _film(given, turning, oil, formula, film_model(rollers, choices, slip))
+    pair = rollers.rough_pair(seed, choices.gap)
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
     if "line" in choices.models:
-        contact = ensemble(table, rollers, realisations, seed, 0.0, gap)
-        on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
+        contact = ensemble(pair, table, realisations, 0.0)
+        on_pairs = pair_probabilities(pair, table, slip)
         width = 2.0 * table["contact_half_width"].max().item()
         whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))
         parts = joined(table, contact, on_pairs)
     if "surface" in choices.models:
-        parts = parts.assign(of_surface(table, rollers, seed, gap, slip))
+        parts = parts.assign(of_surface(pair, table, slip))
         kinds = [f"{kind}{end}" for kind in ("probability", "rate") for end in LIMITS]
         for name in (*kinds, *_OF_PAIR):
             of_points = parts[f"surface_breakthrough_{name}"]

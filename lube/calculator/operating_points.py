@@ -20,12 +20,12 @@ from lube.calculator.arguments import (
 from lube.calculator.bands import Assumptions
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import with_limits, with_pair_limits
+from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
-from lube.grid.gap import Gap
 from lube.grid.plausibility import remarks
 from lube.inference.surface_scatter import revolution_size, surface_prediction
 from lube.schema import LIMITS
@@ -313,18 +313,18 @@ def contact_probability(
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
-    gap = choices.gap
+    pair = rollers.rough_pair(seed, choices.gap)
     check_realisations(realisations, seed)
     assumed = Assumptions(bands, rollers, oil, choices, _names(film_formula)[0], seed)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     found = table[FILM_VARIABLES]
     if "line" in choices.models:
-        contact = ensemble(table, rollers, realisations, seed, slip, gap)
-        on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
+        contact = ensemble(pair, table, realisations, slip)
+        on_pairs = pair_probabilities(pair, table, slip)
         found = joined(table, contact, on_pairs)
     if "surface" in choices.models:
-        found = found.assign(of_surface(table, rollers, seed, gap, slip))
+        found = found.assign(of_surface(pair, table, slip))
     if "surface_load_share" in table:
         found["surface_load_share"] = table["surface_load_share"]
     if assumed.wanted:
@@ -340,10 +340,9 @@ def conditions_of(table: xr.Dataset) -> dict[str, xr.DataArray]:
 
 
 def of_surface(
-    table: xr.Dataset, rollers: Rollers, seed: int, gap: Gap, slip: xr.DataArray | float
+    pair: RoughPair, table: xr.Dataset, slip: xr.DataArray | float
 ) -> dict[str, xr.DataArray]:
     """Contact of the surface at some films, by the names of `contact_probability`."""
-    pair = rollers.rough_pair(seed, gap)
     found = surface_contact(pair, table, slide_to_roll_ratio=slip)
     found = found.assign(surface_rates(found, table["entrainment_speed"]))
     share = [found[f"breakthrough_probability{end}"] for end in LIMITS]
@@ -361,42 +360,33 @@ def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.D
     return found.assign_attrs(contact.attrs | sampled.attrs)
 
 
-def ensemble(
-    table: xr.Dataset, rollers: Rollers, realisations: int, seed: int, slip: float, gap: Gap
-) -> xr.Dataset:
+def ensemble(pair: RoughPair, table: xr.Dataset, realisations: int, slip: float) -> xr.Dataset:
     """Probabilities at some films and contact widths, and their intervals.
 
     Parameters
     ----------
+    pair : RoughPair
+        The rollers.
     table : xarray.Dataset
         With ``film_thickness`` and ``contact_half_width`` (m) over any dimensions, and
         ``reduced_modulus`` (Pa); as `lube.contact.windows.ContactWindows` needs it.
-    rollers : Rollers
-        The two rollers, for their lines and boundary layer.
-    realisations, seed : int
+    realisations : int
         As in `contact_probability`.
     slip : float
         Slide-to-roll ratio.
-    gap : Gap
-        How film and roughness make up the gap.
 
     Returns
     -------
     xarray.Dataset
         Both probabilities over all realisations and the table's dimensions, and their ``_mean``,
         ``_lower`` and ``_upper``.
-
-    Raises
-    ------
-    LubeError
-        If the number of realisations or the seed is not a suitable whole number.
     """
-    spec = rollers.lines
+    spec = pair.spec
     thickness, width = xr.broadcast(table["film_thickness"], 2.0 * table["contact_half_width"])
-    windows = ContactWindows(spec, table, rollers.layer, gap)
+    windows = ContactWindows(spec, table, pair.layer, pair.gap)
 
     def of_realisation(number):
-        return windows.count(draw_realisation(spec, seed, number), slip)[:, :2]
+        return windows.count(draw_realisation(spec, pair.seed, number), slip)[:, :2]
 
     counts = on_threads(of_realisation, range(realisations), name="contact of lines")
     shares = np.reshape(np.moveaxis(counts, -1, 0), (2, -1, *thickness.shape))
@@ -404,5 +394,5 @@ def ensemble(
     contact = {name: (dims, each) for name, each in zip(_PROBABILITIES, shares, strict=True)}
     levels = {"realisation": np.arange(realisations), **thickness.coords}
     independent = spec.independent_windows(width, min(speed_ratios(slip)))
-    found = with_limits(xr.Dataset(contact, levels, {"seed": seed}), independent)
+    found = with_limits(xr.Dataset(contact, levels, {"seed": pair.seed}), independent)
     return with_pair_limits(found, independent)

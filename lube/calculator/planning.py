@@ -123,7 +123,7 @@ def plan(
         found, size, ratio = on_surfaces(pair, table, contact, slip, records)
         reading, realisations = reading_of_surfaces(reading, found.probability), SURFACES
     else:
-        contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
+        contact = ensemble(pair, table, realisations, slip)
         slower, width = min(speed_ratios(slip)), 2.0 * table["contact_half_width"]
         windows = rollers.lines.independent_windows(width, slower)
         size = sample_size(contact["breakthrough_probability"], windows).ravel()

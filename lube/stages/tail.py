@@ -4,17 +4,15 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.contact.rough_pair import RoughPair
 from lube.contact.windows import FLATTENED, ContactWindows, study_windows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
-from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, mean_interval
 from lube.statistics.sample_size import independent_windows
-from lube.study.line_spec import LineSpec
-from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.rare_contact import WINDOWS, check_gaussian
 from lube.surfaces.spectra import pair_moments
@@ -183,30 +181,19 @@ def _pair_shares(groups):
 
 
 def pair_probabilities(
-    spec: LineSpec,
-    film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    seed: int,
-    slide_to_roll_ratio: xr.DataArray | float,
-    gap: Gap = PLAIN,
+    pair: RoughPair, film: xr.Dataset, slide_to_roll_ratio: xr.DataArray | float
 ) -> xr.Dataset:
     """Compute probabilities and rate of contact on each pair of lines, on all processors.
 
     Parameters
     ----------
-    spec : LineSpec
-        Parameters of the lines; `Study.line_spec` of a study.
+    pair : RoughPair
+        The rollers, of which other pairs are drawn, too.
     film : xarray.Dataset
         ``film_thickness``, ``contact_half_width`` (m) and ``entrainment_speed`` (m/s) over any
         dimensions, and ``reduced_modulus`` (Pa).
-    boundary_layer : BoundaryLayer
-        The boundary layer.
-    seed : int
-        Seed of the study.
     slide_to_roll_ratio : xarray.DataArray or float
         Over the same dimensions.
-    gap : Gap, optional
-        How film and roughness make up the gap; by default flat films, and lines as drawn.
 
     Returns
     -------
@@ -216,12 +203,13 @@ def pair_probabilities(
         quantity of several points is first computed on each pair. The attribute ``remarks`` is as
         in ``tail.nc``.
     """
+    spec, gap = pair.spec, pair.gap
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
         names = *_PROBABILITIES, "breakthrough_rate"
         return xr.Dataset(dict.fromkeys(names, unknown), attrs={"remarks": remark})
-    windows = ContactWindows(spec, film, boundary_layer, gap)
-    table, runs = _sampled(spec, film, windows, slide_to_roll_ratio, seed, PAIRS)
+    windows = ContactWindows(spec, film, pair.layer, gap)
+    table, runs = _sampled(spec, film, windows, slide_to_roll_ratio, pair.seed, PAIRS)
     table["breakthrough_rate"] = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
     return table.assign_attrs(remarks="").transpose("pair", *film["film_thickness"].dims)
 

@@ -268,7 +268,8 @@ def test_of_two_films_of_a_share_the_thicker_is_named(merging):
                 "reduced_modulus": merging.pair.reduced_modulus,
             }
         )
-        contact = ensemble(films, merging, *FEW.values(), 0.0, PLAIN)
+        pair = merging.rough_pair(FEW["seed"], PLAIN)
+        contact = ensemble(pair, films, FEW["realisations"], 0.0)
         thin, most, there, beyond = contact["breakthrough_probability_mean"].values
         assert beyond < share < most
         assert thin < 0.995 * largest

@@ -62,8 +62,8 @@ def test_a_film_that_is_not_known_has_no_contact_that_is(spec, film, study):
 def test_ridges_as_long_as_the_rollers_touch_as_often_as_their_line(make_spec, film, study):
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[2, 4])
     spec = make_spec(50_000, lay_ratio=700.0, lay_angle=90.0)
-    found = surface_contact(RoughPair(spec, 1e-3, study.boundary_layer, SEED), few)
-    of_lines = pair_probabilities(spec, few, study.boundary_layer, SEED, 0.0)
+    pair = RoughPair(spec, 1e-3, study.boundary_layer, SEED)
+    found, of_lines = surface_contact(pair, few), pair_probabilities(pair, few, 0.0)
     name = "geometric_contact_probability"
     line = of_lines[name].mean("pair")
     half = 0.5 * (found[f"{name}_upper"] - found[f"{name}_lower"])
