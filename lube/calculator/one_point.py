@@ -12,7 +12,7 @@ from lube.calculator.arguments import (
     one_name,
     single,
 )
-from lube.calculator.operating_points import film_model
+from lube.calculator.operating_points import check_contact, film_model
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.rough_pair import roughness_batch
 from lube.errors import RangeError
@@ -68,11 +68,10 @@ def trace(
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     choices = Choices.of(film_shape, roughness_deformation, "none", "line")
     one = _one_point(rollers, oil, force, speed, temperature)
+    check_contact(rollers, rollers.pair.contact_half_width(*one[2]), choices)
     model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}
     table = film_table(*one, [one_name("film_formula", film_formula)], **model)
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
-    rollers.lines.check_width(2.0 * table["contact_half_width"].item(), "force: the contact")
-    rollers.lines.check_follows_rolling()
     lines = roughness_batch(rollers.lines, seed, [0])
     layer, resistivity = rollers.layer, rollers.resistivity
     found = contact_trace(lines, table, [point], layer, resistivity, choices.gap)
