@@ -417,8 +417,11 @@ def _record(viscosity, density, base, pressure_viscosity):
 
 
 def _points(viscosity):
-    if isinstance(viscosity, str | Path) and Path(viscosity).is_file():
-        return read_viscosity_csv(viscosity)
+    # A text may also be a viscosity without its temperature.
+    if isinstance(viscosity, str | Path):
+        path = Path(viscosity)
+        if path.suffix == ".csv" or path.is_file():
+            return read_viscosity_csv(viscosity)
     if not isinstance(viscosity, Mapping):
         raise RecordError(
             f"Oil: viscosity: got {shown(viscosity)}, need viscosities by temperature, such as "

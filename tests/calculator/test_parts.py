@@ -147,6 +147,7 @@ def test_both_show_themselves_and_travel_between_processes():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
+        (lambda: Oil(viscosity="missing.csv"), "missing.csv: cannot be read: No such file"),
         (lambda: Rollers("50", "0.2 um"), "Rollers: radius: got '50', need a number with its unit"),
         (
             lambda: Rollers("50 mm", "0.2 um", shortest_wavelength="10 points"),
