@@ -74,7 +74,8 @@ _NUMBERS = {
     "breakthrough_probability": "breakthroughs",
 }
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
-_SAMPLED = [f"{name}{end}" for pair in _NUMBERS.items() for name in pair for end in LIMITS]
+_RATIO = "breakdown_ratio"
+_SAMPLED = [f"{name}{end}" for name in (*_NUMBERS, *_NUMBERS.values(), _RATIO) for end in LIMITS]
 _VARIABLES = (*_EXPECTED, *_SAMPLED, "pair_deviation")
 
 
@@ -118,8 +119,9 @@ def surface_contact(
     -------
     xarray.Dataset
         ``geometric_contact_probability`` and ``breakthrough_probability``, the numbers ``contacts``
-        and ``breakthroughs`` in the strip, each with ``_lower`` and ``_upper``, and the numbers
-        that theory expects, ``expected_contacts`` and ``expected_breakthroughs``; the way that the
+        and ``breakthroughs`` in the strip, and the part of its area where the layer is broken,
+        ``breakdown_ratio``, each with ``_lower`` and ``_upper``; the numbers that theory expects,
+        ``expected_contacts`` and ``expected_breakthroughs``; the way that the
         rollers move while a contact is in the strip, ``passage_width`` (m), and the scatter of a
         pair's share of breakthrough in a revolution of pure rolling, ``pair_deviation``, as
         `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film
@@ -151,6 +153,8 @@ def surface_contact(
     dims, shape = thickness.dims, thickness.shape
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
     found = xr.Dataset(values, thickness.coords)
+    for name in (f"{_RATIO}{end}" for end in LIMITS):
+        found[name] = found[name] / (2.0 * half_width)
     looked_at = set(np.array(known, int)[wanted])
     strips = [strip if point in looked_at else None for point, strip in enumerate(strips)]
     points = thickness.copy(data=np.arange(thickness.size).reshape(thickness.shape))
@@ -317,10 +321,14 @@ def _sampled(pair, surface, strips, certain, sharp, seeds, threads):
         limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
         results |= values_with_limits(name, limits)
         results |= values_with_limits(counts, mean_interval(rows * numbers[:, :, which]))
+    in_contact, broken = (mean_interval(along * numbers[:, :, which]) for which in (2, 3))
+    results |= values_with_limits(_RATIO, broken)  # m, of the strip's width
     contacts, sampled = results["contacts_upper"], STRIPS * len(seeds)
-    for name in ("breakthroughs_upper", "breakthrough_probability_upper"):
-        most = np.inf if name == "breakthroughs_upper" else 1.0
-        results[name] = np.minimum(breakthrough_limit(results[name], contacts, sampled), most)
+    for name in ("breakthroughs_upper", "breakthrough_probability_upper", f"{_RATIO}_upper"):
+        of_contact = in_contact[2] if name == f"{_RATIO}_upper" else contacts
+        results[name] = breakthrough_limit(results[name], of_contact, sampled)
+    most = results["breakthrough_probability_upper"]
+    results["breakthrough_probability_upper"] = np.minimum(most, 1.0)
     return results
 
 
@@ -334,7 +342,7 @@ def _reach(spec, spacing):
 
 
 def _on_one_surface(seeds, surface, covariances, strips, reach):
-    """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 2)."""
+    """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 4)."""
     drawing, choosing = map(np.random.default_rng, seeds)
     *fields, waves = surface.draw(drawing)
     fields, chosen, both = tuple(fields), choosing.random((4, STRIPS)), []

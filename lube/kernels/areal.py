@@ -126,11 +126,12 @@ def touching_strips(
         contacts that begin in the same row divide it among them. `breakthrough` counts only
         contacts whose boundary layer breaks.
     contacts : numpy.ndarray
-        Shape (2,), sums over all contacts, and over those whose boundary layer breaks.
+        Shape (4,), sums over all contacts, over those whose boundary layer breaks, and over the
+        points of either.
     """
     reach, width = covariances[0].shape[0] - 1 - around, film.size
     rows = reach - around
-    contact, breakthrough, contacts = np.zeros(rows + 1), np.zeros(rows + 1), np.zeros(2)
+    contact, breakthrough, contacts = np.zeros(rows + 1), np.zeros(rows + 1), np.zeros(4)
     seen = np.zeros((reach + 1 + around, width), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
     heights, filled = np.empty(seen.shape, np.float32), np.full(seen.shape[0], -1)
@@ -159,11 +160,11 @@ def touching_strips(
         moved = fields, covariances, *place, rise, oil, rows_of_heights
         own, others_too = np.int32(2 * k + 1), np.int32(2 * k + 2)
         search = film, sharp, fading, seen, own, stack, diagonal
-        chosen, breaks, first = _contact(moved, search, known_row, origin)
+        chosen, points, breaks, first = _contact(moved, search, known_row, origin)
         in_row = film, sharp, fading, seen, others_too, stack, diagonal
         broken = 0
         if not breaks:
-            _, broken, _ = _row(moved, in_row, known_row, own)
+            broken = _row(moved, in_row, known_row, own)[1]
         chosen_in_row = 0.0
         for column in range(width):
             overlap = heights[reach, column] - film[column]
@@ -173,10 +174,12 @@ def touching_strips(
         breakthrough[0] += (breaks or broken > 0) / chosen_in_row
         contacts[0] += 1.0 / chosen
         contacts[1] += breaks / chosen
+        contacts[2] += points / chosen
+        contacts[3] += breaks * points / chosen
         if first <= -around:
             continue  # too long a contact to be a first one
         _least_by_block(places[1][k], film, least)
-        others, broken, earliest = _row(moved, search, first, own)
+        others, broken, _, _, earliest = _row(moved, search, first, own)
         # Several contacts that begin in the same row count as one first contact.
         alone, alone_broken = 1 + others, 1 + broken
         if not breaks or earliest < first:
@@ -188,10 +191,8 @@ def touching_strips(
                 low = before + GROUP - 1
             if before > low and _touches(moved, tops, known, film, least, row):
                 alone = 0
-                if alone_broken > 0:
-                    _, broken, _ = _row(moved, search, row, own)
-                    if broken > 0:
-                        alone_broken = 0
+                if alone_broken > 0 and _row(moved, search, row, own)[1] > 0:
+                    alone_broken = 0
             if alone > 0:
                 contact[before] += 1.0 / (chosen * alone)
             if alone_broken > 0:
@@ -237,13 +238,14 @@ def contacts_per_row(
     Returns
     -------
     numpy.ndarray
-        Shape (2,): mean number of contacts, and of those whose boundary layer breaks.
+        Shape (4,): mean number of contacts, of those whose boundary layer breaks, and of the points
+        of either.
     """
     reach = covariances[0].shape[0] - 1 - around
     seen = np.zeros((reach + 1 + around, film.size), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
     heights, filled = np.empty(seen.shape, np.float32), np.full(seen.shape[0], -1)
-    counts = np.zeros(2)
+    counts = np.zeros(4)
     origin, unmoved, first = np.int64(0), np.float32(0.0), np.int64(-reach)
     strip_nodes = answered.shapes.shape[0]
     by_known = np.zeros((2, answered.covariances.shape[2], strip_nodes), np.float32)
@@ -254,10 +256,10 @@ def contacts_per_row(
         moved = fields, covariances, *place, unmoved, oil, (heights, filled, k)
         search = film, sharp, fading, seen, np.int32(k + 1), stack, diagonal
         for row in range(first, around + 1):
-            contacts, broken, _ = _row(moved, search, row, search[4])
+            found = _row(moved, search, row, search[4])
             if row > first:  # those of the first row may begin before it
-                counts[0] += contacts
-                counts[1] += broken
+                for number in range(4):
+                    counts[number] += found[number]
     return counts / (places[0].size * (reach + around))
 
 
@@ -265,24 +267,26 @@ def contacts_per_row(
 def _row(moved, search, row, followed):
     """Follow the contacts of a row that were not followed before, under the same or another mark.
 
-    Returns the numbers of new contacts, and of new contacts whose boundary layer breaks, and the
-    earliest row of the last ones.
+    Returns the numbers of new contacts, of new contacts whose boundary layer breaks, and of the
+    points of either, and the earliest row of those that break.
     """
     film, seen, mark = search[0], search[3], search[4]
     reach = moved[2]
-    contacts, broken, earliest = 0, 0, row
+    contacts, broken, points, broken_points, earliest = 0, 0, 0, 0, row
     heights, filled, own = moved[8]
     if filled[reach + row] != own:
         _fill_row(moved, row)
     for column in range(film.size):
         before = seen[reach + row, column]
         if heights[reach + row, column] > film[column] and before != mark and before != followed:
-            _, breaks, first = _contact(moved, search, row, column)
+            _, own_points, breaks, first = _contact(moved, search, row, column)
             contacts += 1
+            points += own_points
             if breaks:
                 broken += 1
+                broken_points += own_points
                 earliest = min(earliest, first)
-    return contacts, broken, earliest
+    return contacts, broken, points, broken_points, earliest
 
 
 @kernel
@@ -431,7 +435,7 @@ def _contact(moved, search, row, column):
     """Follow the contact at a touching point.
 
     Returns the sum of its points' probabilities to be known, over that of a point without overlap,
-    whether its boundary layer breaks, and its earliest row.
+    the number of its points, whether its boundary layer breaks, and its earliest row.
     """
     film, sharp, fading, seen, mark, stack, diagonal = search
     reach, (heights, filled, own) = moved[2], moved[8]
@@ -440,7 +444,7 @@ def _contact(moved, search, row, column):
         _fill_row(moved, row)
     seen[reach + row, column] = mark
     stack[0, 0], stack[0, 1] = row, column
-    waiting, earliest = 1, row
+    waiting, points, earliest = 1, 1, row
     highest, summit_row, summit_column = heights[reach + row, column] - film[column], row, column
     chosen = np.exp(-fading[column] * highest)
     while waiting > 0:
@@ -461,9 +465,9 @@ def _contact(moved, search, row, column):
             if overlap > 0.0:
                 seen[reach + next_row, next_column] = mark
                 stack[waiting, 0], stack[waiting, 1] = next_row, next_column
-                waiting, earliest = waiting + 1, min(earliest, next_row)
+                waiting, points, earliest = waiting + 1, points + 1, min(earliest, next_row)
                 chosen += np.exp(-fading[next_column] * overlap)
                 if overlap > highest:
                     highest, summit_row, summit_column = overlap, next_row, next_column
     breaks = _moved(1, moved, summit_row, summit_column) > sharp[summit_column]
-    return chosen, breaks, earliest
+    return chosen, points, breaks, earliest

@@ -46,14 +46,15 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     table, rigs = _capacitances(study, film), {OWN_RIG: study.rig}
     rigs |= {name: study.rig.like(name) for name in PRESETS}
     readings, length = _readings(study, film, rigs, slip, threads)
-    share, ratio = readings["true_contact_share"], xr.full_like(length, np.nan)
-    if not study.rig.has_surfaces:
+    share = readings["true_contact_share"]
+    if study.rig.has_surfaces:
+        table["breakdown_ratio"] = _contact_of_surfaces(study, film, threads)["breakdown_ratio"]
+    else:
         contact = inputs["contact"].isel(film_formula=0, drop=True)
         contact = contact.sel(slide_to_roll_ratio=slip, drop=True)
         length = contact["mean_contact_length"].mean("realisation")
         share = contact["breakthrough_probability_mean"]
-        ratio = length / (2.0 * film["contact_half_width"])
-    table["breakdown_ratio"] = ratio
+        table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
     closed = study.resistivity * share / length.where(length > 0.0)
     deviations = 0.0, *(study.resistivity_range or (np.nan, np.nan))
     limits = [closed * (1.0 + deviation) for deviation in deviations]
@@ -149,8 +150,7 @@ def _discharges(study, film, rigs, threads):
         thickness = (film["film_thickness"] - closer).clip(min=0.0)
         if study.rig.has_surfaces:
             thicker = (thickness / film["film_thickness"]).values.ravel()
-            choices = {"threads": threads, "fewer": FEWER, "thicker": thicker}
-            contact = surface_contact(RoughPair.of(study), film, **choices)
+            contact = _contact_of_surfaces(study, film, threads, thicker)
             return contact["geometric_contact_probability"].values
         windows = study_windows(study, film.assign(film_thickness=thickness))
         return windows.on_pairs(study.line_spec, study.seed, PAIRS, threads)[:, 0].mean(axis=0)
@@ -161,3 +161,9 @@ def _discharges(study, film, rigs, threads):
     each = [np.maximum(found[gap] - found[0.0], 0.0) for gap in gaps]
     sizes = [film.sizes[name] for name in POINT_DIMS]
     return ("rig", *POINT_DIMS), six_digits(np.reshape(each, (len(rigs), *sizes)))
+
+
+def _contact_of_surfaces(study, film, threads, thicker=1.0):
+    """Contact of surfaces, of fewer than for ``areal.nc``."""
+    pair = RoughPair.of(study)
+    return surface_contact(pair, film, threads, fewer=FEWER, thicker=thicker).drop_attrs()

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-import scipy.ndimage
+import scipy
 from whole_surfaces import Filtered, Unchanged, answered_strip, drawn_waves
 
 from lube.contact import surface_strip
 from lube.contact.rough_pair import RoughPair
+from lube.contact.strip_film import surface_moments
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import StripFilm, strip_probability, surface_contact
 from lube.errors import StudyError
@@ -189,9 +190,23 @@ def test_a_layer_that_no_sampled_contact_breaks_has_an_upper_limit(study, make_s
     film = film_table(oil, study.rollers, [800.0], [100.0], ["paper"])
     layer = study.boundary_layer.model_copy(update={"shear_strength": 1e12})
     found = surface_contact(RoughPair(make_spec(30_000), 10e-3, layer, SEED), film)
-    for name in ("breakthrough_probability", "breakthroughs"):
+    for name in ("breakthrough_probability", "breakthroughs", "breakdown_ratio"):
         assert found[name] == found[f"{name}_lower"] == 0.0
         assert 0.0 < found[f"{name}_upper"] < 1e-3 * found["contacts"]
+
+
+@pytest.mark.parametrize("temperature", [40.0, 80.0])
+def test_a_layer_that_always_breaks_is_broken_where_the_surface_is_higher_than_the_film(
+    study, make_spec, temperature
+):
+    oil, spec = lubricant_table(study.lubricants, [temperature]), make_spec(30_000)
+    film = film_table(oil, study.rollers, [1600.0], [100.0], ["paper"])
+    none = study.boundary_layer.model_copy(update={"shear_strength": 1e-9})
+    found = surface_contact(RoughPair(spec, 10e-3, none, SEED), film)
+    ratio = film["film_thickness"].item() / surface_moments(spec).height ** 0.5
+    expected = scipy.stats.norm.sf(ratio)
+    half = 0.5 * (found["breakdown_ratio_upper"] - found["breakdown_ratio_lower"])
+    assert abs(found["breakdown_ratio"] - expected) < 1.5 * half < 0.1 * expected
 
 
 @pytest.mark.parametrize(

@@ -90,7 +90,8 @@ def naive(
     chosen = np.exp(-fading * (heights - film))
     size, begin = np.sum(chosen[labels == mine]), np.min(np.nonzero(labels == mine)[0])
     results = [np.zeros(REACH - AROUND + 1), np.zeros(REACH - AROUND + 1)]
-    numbers = np.array([1.0, breaks[mine]]) / size
+    points = np.count_nonzero(labels == mine)
+    numbers = np.array([1.0, breaks[mine], points, points * breaks[mine]]) / size
     touches = labels[REACH] > 0
     here = labels[REACH][touches]
     for which, result in enumerate(results):
@@ -178,7 +179,7 @@ def test_contacts_are_counted_in_the_row_in_which_they_begin(shape, diagonal, is
     if is_answered:
         answered = random_answer(rng, 300)
         places = tuple(each >> SHIFT << SHIFT for each in places)
-    expected = np.zeros(2)
+    expected = np.zeros(4)
     for row, column in zip(*places, strict=True):
         part = np.s_[row - REACH : row + AROUND + 1, column : column + WIDTH]
         overlap = fields[0][part] + added(answered, row, column, 0)[0] - film
@@ -186,7 +187,8 @@ def test_contacts_are_counted_in_the_row_in_which_they_begin(shape, diagonal, is
         begun = [number for number in range(1, count + 1) if not (labels[0] == number).any()]
         summits = scipy.ndimage.maximum_position(overlap, labels, begun)
         breaks = [fields[1][part][summit] > sharp[summit[1]] for summit in summits]
-        expected += len(begun), sum(breaks)
+        points = np.bincount(labels.ravel())[begun]
+        expected += len(begun), sum(breaks), points.sum(), points[breaks].sum()
     covariances = (np.zeros((REACH + 1 + AROUND, 2 * WIDTH - 1), np.float32),) * 2
     strips = places, film, sharp, AROUND, answered
     found = contacts_per_row(fields, covariances, *strips, diagonal)
