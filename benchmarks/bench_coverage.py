@@ -42,7 +42,6 @@ from lube.inference.fits import (
     alpha_logits,
     fit_records,
     strength_logits,
-    study_strength,
 )
 from lube.inference.record_curves import map_curves, own_curves
 from lube.recordings.manifest import Entry, Manifest, read_manifest
@@ -245,10 +244,10 @@ def judge(ensemble, comparison, curves, shares):
     """
     one = comparison.isel(film_formula=0)
     lower, upper = (one[f"predicted_share_{side}"].values for side in ("lower", "upper"))
-    strength = strength_logits(curves, ensemble.contact, comparison)
+    strength = ensemble.study.boundary_layer.strength
     fits = {
         "alpha": (ALPHA_FACTORS, alpha_logits(curves, comparison), 1.0),
-        "layer": (*strength, study_strength(ensemble.contact)),
+        "layer": (*strength_logits(curves, strength, comparison), strength),
     }
     everyone = np.ones((len(shares), 1))
     found = {

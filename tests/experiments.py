@@ -11,6 +11,10 @@ from lube.statistics.folding import PHASES
 THRESHOLDS = np.array([10.0, 100.0, 1000.0])
 CURVE_RATIOS = np.geomspace(0.3, 4.0, 40)
 """Lambda ratios of the curves of `made_up_surfaces`."""
+LAYER_STRENGTHS = 4e13 * np.array([1.0, 4.0, 10.0, 30.0])
+"""Strengths of boundary layers on these surfaces, the weakest the study's, Pa/m."""
+LAYER_BREAKS = np.array([1.0, 0.9, 0.5, 0.1])
+"""Probability of breakthrough with each, over that with the study's."""
 SURFACE_WINDOWS = 400
 """Independent trials in a revolution of these surfaces."""
 
@@ -100,6 +104,12 @@ def made_up_surfaces(ratios, error=0.0):
         "curve_lambda_ratio": CURVE_RATIOS,
         "curve_sample_size": np.full(curves.shape, float(SURFACE_WINDOWS)),
         **values_with_limits("curve_probability", sides[:, None, None] * curves),
+    }
+    by_layer = LAYER_BREAKS[:, None] * surface_probability(CURVE_RATIOS[::3])
+    values |= {
+        "layer_strength": LAYER_STRENGTHS,
+        "layer_lambda_ratio": CURVE_RATIOS[::3],
+        "layer_curve_probability": np.repeat(by_layer[..., None], records, axis=2),
     }
     limits = sides[:, None, None] * surface_probability(ratios.values)
     values |= values_with_limits("breakthrough_probability", limits)

@@ -28,6 +28,7 @@ def on_few_surfaces(number=6):
         patch.setattr("lube.contact.surface_strip.SURFACES", number)
         patch.setattr("lube.contact.surface_strip.STRIPS", 150)
         patch.setattr("lube.inference.surface_records.FEWER", 1)
+        patch.setattr("lube.inference.surface_records.LAYER_FEWER", 1)
         patch.setattr("lube.inference.planning.FEWER", 1)
         patch.setattr("lube.stages.areal.FEWER", 2)
         patch.setattr("lube.grid.film_responses.ANGLES", np.arange(0.0, 91.0, 45.0))

@@ -18,7 +18,7 @@ from lube.inference.record_curves import RecordCurves, realised_shares
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
-from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 from lube.types import Array
 
 Data = xr.Dataset
@@ -32,7 +32,7 @@ STRENGTH_LEVELS = 193
 """Number of layer strengths that are tried, from the weakest of the curves to the strongest."""
 
 
-def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
+def fit_alpha(curves: RecordCurves, study: Study, comparison: Data) -> Data:
     """Fit the factor of the pressure-viscosity coefficient to all records together.
 
     For every lubricant and film formula there is one factor, common to all records. The film
@@ -47,8 +47,10 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
     ----------
     curves : RecordCurves
         Curves of the records of the comparison.
-    contact, comparison : xarray.Dataset
-        Datasets of these kinds, of one study.
+    study : Study
+        Its lubricants and boundary layer.
+    comparison : xarray.Dataset
+        A ``comparison`` dataset of the study.
 
     Returns
     -------
@@ -60,7 +62,7 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
     """
     logits = alpha_logits(curves, comparison)
     model = curves.contact_model
-    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison, model)
+    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, study, comparison, model)
 
 
 def alpha_logits(curves: RecordCurves, comparison: Data) -> xr.DataArray:
@@ -81,7 +83,7 @@ def alpha_logits(curves: RecordCurves, comparison: Data) -> xr.DataArray:
     return logits.transpose("factor", "film_formula", "record")
 
 
-def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
+def fit_layer_strength(curves: RecordCurves, study: Study, comparison: Data) -> Data:
     """Fit the strength tau0 / h_c of the boundary layer to all records together.
 
     As `fit_alpha`, with the film thickness as the formula gives it.
@@ -90,27 +92,25 @@ def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) ->
     ----------
     curves : RecordCurves
         Curves of the records of the comparison.
-    contact, comparison : xarray.Dataset
-        Datasets of these kinds, of one study.
+    study : Study
+        Its lubricants and boundary layer.
+    comparison : xarray.Dataset
+        A ``comparison`` dataset of the study.
 
     Returns
     -------
     xarray.Dataset
         ``fitted_layer_strength`` (Pa/m) with ``_lower`` and ``_upper`` over (fitted_lubricant,
         film_formula). Beyond the strengths of the curves it is NaN, a limit 0 or infinity.
-        ``fitted_layer_strength_coverage`` as in `fit_alpha`. Contact of the surface does not tell
-        the strength, so by its curves all values are NaN, all limits 0 and infinity.
+        ``fitted_layer_strength_coverage`` as in `fit_alpha`.
     """
-    name = "fitted_layer_strength"
-    if curves.contact_model == "surface":
-        unknown = xr.full_like(comparison["lambda_ratio"], np.nan).expand_dims("factor")
-        return _fits(name, np.ones(1), 1.0, unknown, contact, comparison, "surface")
-    tried, logits = strength_logits(curves, contact, comparison)
-    return _fits(name, tried, study_strength(contact), logits, contact, comparison)
+    tried, logits = strength_logits(curves, study.boundary_layer.strength, comparison)
+    known = study.boundary_layer.strength, logits, study, comparison, curves.contact_model
+    return _fits("fitted_layer_strength", tried, *known)
 
 
 def strength_logits(
-    curves: RecordCurves, contact: Data, comparison: Data
+    curves: RecordCurves, strength: float, comparison: Data
 ) -> tuple[Array, xr.DataArray]:
     """Logits of the mean probability at the records, for many layer strengths.
 
@@ -118,8 +118,10 @@ def strength_logits(
     ----------
     curves : RecordCurves
         Curves of the records of the comparison.
-    contact, comparison : xarray.Dataset
-        Datasets of these kinds, of one study.
+    strength : float
+        Strength of the study's layer, Pa/m.
+    comparison : xarray.Dataset
+        A ``comparison`` dataset of the study.
 
     Returns
     -------
@@ -132,7 +134,7 @@ def strength_logits(
     # Curves of layers are coarse, so only their difference from the study's layer is used.
     ratios = comparison["lambda_ratio"]
     coarse = curves.layer_logits(ratios)
-    own = coarse.sel(layer_strength=study_strength(contact), method="nearest", drop=True)
+    own = coarse.sel(layer_strength=strength, method="nearest", drop=True)
     logits = curves.logits(ratios) + coarse - own
     logits = logits.transpose("layer_strength", "film_formula", "record")
     # A record is left out if contact with any of the layers is too rare for the curves there.
@@ -141,22 +143,6 @@ def strength_logits(
         np.log(logits["layer_strength"]), logits.fillna(0.0)
     )
     return tried, known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
-
-
-def study_strength(layer: Data | BoundaryLayer) -> float:
-    """Strength of the study's boundary layer, its only property on which the model depends.
-
-    Parameters
-    ----------
-    layer : xarray.Dataset or BoundaryLayer
-        A ``contact`` dataset, which has its properties, or the layer itself.
-
-    Returns
-    -------
-    float
-        tau0 / h_c, Pa/m.
-    """
-    return float(layer.shear_strength / layer.critical_thickness)
 
 
 def _lambda_ratios(comparison, factor):
@@ -209,9 +195,10 @@ def _between_nodes(films, factor):
     return np.exp(curve(np.minimum(np.log(factor), last)) + beyond * curve(last, 1))
 
 
-def _fits(name, tried, truth, logits, contact, comparison, contact_model="line"):
+def _fits(name, tried, truth, logits, study, comparison, contact_model):
     """Fit a factor, with its limits and coverage, for every lubricant and film formula."""
-    oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
+    oils = np.array([record.name for record in study.lubricants])
+    formulas = comparison["film_formula"].values
     fits = np.full((len(LIMITS) + 1, oils.size, formulas.size), np.nan)
     for oil, number in np.ndindex(fits.shape[1:]):
         here = {"film_formula": number, "record": comparison["lubricant"].values == oils[oil]}

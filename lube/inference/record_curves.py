@@ -221,7 +221,7 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
     for factor, pairs in zip(LAYER_FACTORS, by_layer, strict=True):
         row = [_through(few, mean, np.nan) for mean in pairs.mean(axis=0).T]
         if factor == 1.0 or any(curve.films.size for curve in row):  # others may never break
-            strengths.append(factor * layer.shear_strength / layer.critical_thickness)
+            strengths.append(factor * layer.strength)
             of_layers.append(row)
     of_records, *of_layers = ([row[number] for number in inverse] for row in (curves, *of_layers))
     offsets = curve_offsets(comparison, study.gap.has_shape)

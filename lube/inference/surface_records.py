@@ -6,18 +6,18 @@ record, and its film is read from their probability at thinner and thicker films
 """
 
 import numpy as np
-import scipy.special
+import scipy
 import xarray as xr
 
 from lube.contact.rough_pair import RoughPair
-from lube.contact.strip_film import surface_moments
-from lube.contact.surface_strip import surface_contact
+from lube.contact.strip_film import curvature_moments, surface_moments
+from lube.contact.surface_strip import mean_breaking_curvature, surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_responses
 from lube.inference.at_records import film_at_records
 from lube.inference.record_curves import RecordCurves, curve_offsets
 from lube.inference.surface_scatter import revolution_size, surface_scatter
-from lube.physics.excursions import expected_contacts
+from lube.physics.excursions import expected_contacts, sharp_surface_summit_share
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import contact_curve
 from lube.study.oil_properties import lubricant_table
@@ -28,8 +28,13 @@ CURVE_FILMS = 8
 """Number of films of a curve at which contact is sampled."""
 CURVE_CONTACTS = 20.0, 1e-5
 """Contacts that theory expects in the strip under the thinnest and the thickest of these films."""
-FEWER = 3
-"""Surfaces drawn for the film of a record, for each one drawn for its curve."""
+LAYER_FILMS = [1, 3, 5]
+"""Numbers of those of these films at which contact with other boundary layers is sampled."""
+LAYER_SHARES = 0.9, 0.5, 0.2, 0.05
+"""Fractions of summits that are sharp enough to break boundary layers of other strengths."""
+FEWER, LAYER_FEWER = 3, 8
+"""Surfaces drawn for the film of a record, for each one drawn for its curve, and for its curves of
+other layers."""
 _SLIP = "slide_to_roll_ratio"
 
 
@@ -59,7 +64,9 @@ def surfaces_at_records(
         for the first film formula, read from curves for the others. These curves are
         ``curve_probability`` and ``curve_sample_size`` over curve_lambda_ratio and record: the
         same for the film of the record, made thinner and thicker. The shape of the film, and how
-        the oil deforms the surfaces, stay those of the record. And ``scatter_ratio`` from
+        the oil deforms the surfaces, stay those of the record. ``layer_curve_probability``, over
+        layer_strength, layer_lambda_ratio and record, is the same for other boundary layers, at
+        fewer films and on fewer surfaces. And ``scatter_ratio`` from
         `lube.inference.surface_scatter.surface_scatter`.
     """
     experiment, first = inputs["experiment"], films.isel(film_formula=0)
@@ -78,11 +85,18 @@ def surfaces_at_records(
     thickness = xr.DataArray(ratios, dims="curve_film") * first["composite_rms_roughness"].item()
     slips, turns = (experiment[name].values for name in (_SLIP, "turns"))
     pair, scatter = RoughPair.of(study), np.empty(row_of.size)
+    few, strengths = thickness[LAYER_FILMS], _layer_strengths(pair, first, thickness.median())
+    of_layers = np.empty((strengths.size, few.size, row_of.size))
     for records, some in (part for part in parts if part[0].any()):
         motion = slips[records], turns[records], study.rig.drift
         scatter[records] = surface_scatter(pair, some, own[0, records], *motion)
-        some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
-        curves[..., records] = _sampled(study, some, threads, FEWER)
+        many, some = (
+            some.assign(film_thickness=each * xr.ones_like(some["film_thickness"]))
+            for each in (thickness, few)
+        )
+        curves[..., records] = _sampled(study, many, threads, FEWER)
+        for row, weaker in zip(of_layers, pair.layer.strength / strengths, strict=True):
+            row[..., records] = _sampled(study, some, threads, LAYER_FEWER, weaker)[0]
     by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
     found = {
         "film_formula": films["film_formula"].values,
@@ -92,6 +106,9 @@ def surfaces_at_records(
         "scatter_ratio": scatter,
         **values_with_limits("curve_probability", curves[:3]),
         "curve_sample_size": curves[3],
+        "layer_strength": strengths,
+        "layer_lambda_ratio": ratios[LAYER_FILMS],
+        "layer_curve_probability": of_layers,
         "record": experiment["record"].values,
     }
     return xr.Dataset(with_dims("surface_records", found))
@@ -139,13 +156,14 @@ def _off_grid(study, experiment, first):
     return first.drop_dims(["wavelength", "response_position"]).assign(responses)
 
 
-def _sampled(study, films, threads, fewer=1):
+def _sampled(study, films, threads, fewer=1, weaker=1.0):
     """Numbers as from `_numbers`, sampled once for all records that have the same."""
     if not films.sizes["record"]:
         return np.empty((4, *films["film_thickness"].shape))
     one_film = films.isel(curve_film=0, missing_dims="ignore")
     some, inverse = study_windows(study, one_film).distinct()
-    found = surface_contact(RoughPair.of(study), films.isel(record=some), threads, fewer=fewer)
+    choices = {"fewer": fewer, "weaker": weaker}
+    found = surface_contact(RoughPair.of(study), films.isel(record=some), threads, **choices)
     return _numbers(study, found.transpose(..., "record"))[..., inverse]
 
 
@@ -164,6 +182,16 @@ def _curve_ratios(study, first):
     return np.geomspace(*ends, CURVE_FILMS)
 
 
+def _layer_strengths(pair, films, level):
+    """Strengths of boundary layers, Pa/m, rising: the pair's, and those that some summits break."""
+    factors = np.geomspace(1e-3, 1e3, 400)
+    sharp = mean_breaking_curvature(pair, films) * factors
+    known = surface_moments(pair.spec), sharp, curvature_moments(pair.spec)
+    shares = sharp_surface_summit_share(np.full(sharp.size, level.item()), *known)
+    others = np.exp(np.interp(np.negative(LAYER_SHARES), -shares, np.log(factors)))
+    return pair.layer.strength * np.sort([1.0, *others])
+
+
 def surface_curves(surfaces: xr.Dataset, comparison: xr.Dataset, has_shape: bool) -> RecordCurves:
     """Curves of contact of the surfaces at records.
 
@@ -179,14 +207,18 @@ def surface_curves(surfaces: xr.Dataset, comparison: xr.Dataset, has_shape: bool
     Returns
     -------
     RecordCurves
-        Without curves for other boundary layers: hardly any of the many contacts in the strip holds
-        its layer, so their probability does not tell the layer's strength.
+        Those of other boundary layers are less exact, and without sample sizes.
     """
     films = np.log(surfaces["curve_lambda_ratio"].values)
     columns = (surfaces[f"curve_{name}"].values.T for name in ("probability", "sample_size"))
     of_records = [contact_curve(films, *of_record) for of_record in zip(*columns, strict=True)]
-    offsets = curve_offsets(comparison, has_shape)
-    return RecordCurves(of_records, offsets, np.zeros(0), [], "surface")
+    few = np.log(surfaces["layer_lambda_ratio"].values)
+    of_layers = [
+        [contact_curve(few, of_record, np.full(few.size, np.nan)) for of_record in of_layer.T]
+        for of_layer in surfaces["layer_curve_probability"].values
+    ]
+    offsets, strengths = curve_offsets(comparison, has_shape), surfaces["layer_strength"].values
+    return RecordCurves(of_records, offsets, strengths, of_layers, "surface")
 
 
 def reading_errors(surfaces: xr.Dataset, shares: Array) -> Array:

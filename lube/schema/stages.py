@@ -253,8 +253,8 @@ _ROWS = (
     Stage(
         "gauge",
         "films, pressure-viscosity coefficient and boundary layer from the records",
-        inputs=("master", "contact", "comparison"),
-        inputs_with={"film": "compares_surfaces", "surface_records": "compares_surfaces"},
+        inputs=("master", "comparison"),
+        inputs_with={"surface_records": "compares_surfaces"},
         only_with=("conducts", "has_records"),
     ),
     Stage(

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.inference.fits import fit_alpha, fit_layer_strength, study_strength
+from lube.inference.fits import fit_alpha, fit_layer_strength
 from lube.inference.record_curves import RecordCurves, gauged_ratios, map_curves, own_curves
 from lube.inference.surface_records import reading_errors, surface_curves
 from lube.schema import AT_RECORDS, label, values_with_limits, with_dims
@@ -29,8 +29,6 @@ _KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_thr
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``gauge.nc``; see `lube.stages`."""
     comparison = inputs["comparison"]
-    # Without lines, which alone are fitted with contact, only the names of the oils are needed.
-    contact = inputs["contact"] if "contact" in inputs else inputs["film"]
 
     def by_line(comparison):
         if "master" in inputs:
@@ -38,7 +36,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         return own_curves(study, comparison, threads)
 
     if not study.compares_surfaces:
-        return gauge_records(by_line(comparison), contact, comparison)
+        return gauge_records(by_line(comparison), study, comparison)
     inferred = []
     for model in comparison["contact_model"].values:
         records = comparison.sel(contact_model=model, drop=True)
@@ -47,9 +45,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
             curves = surface_curves(inputs["surface_records"], records, study.gap.has_shape)
         else:
             curves = by_line(records)
-        inferred.append(_inferred(curves, contact, records))
+        inferred.append(_inferred(curves, study, records))
     by_model = xr.concat(inferred, comparison["contact_model"], join="exact")
-    return _with_records(by_model, study_strength(study.boundary_layer), comparison)
+    return _with_records(by_model, study.boundary_layer.strength, comparison)
 
 
 def _of_surfaces(comparison, surfaces):
@@ -68,15 +66,17 @@ def _of_surfaces(comparison, surfaces):
     )
 
 
-def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
+def gauge_records(curves: RecordCurves, study: Study, comparison: xr.Dataset) -> xr.Dataset:
     """Infer films, the pressure-viscosity coefficient and the boundary layer from the records.
 
     Parameters
     ----------
     curves : RecordCurves
         Curves of the records of the comparison.
-    contact, comparison : xarray.Dataset
-        Datasets of these kinds, of one study.
+    study : Study
+        Its lubricants and boundary layer.
+    comparison : xarray.Dataset
+        A ``comparison`` dataset of the study.
 
     Returns
     -------
@@ -84,14 +84,14 @@ def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Data
         The ``gauge`` file of `lube.schema`, from `gauge_film`, `gauge_coverage`, `fit_alpha` and
         `fit_layer_strength`.
     """
-    inferred = _inferred(curves, contact, comparison)
-    return _with_records(inferred, study_strength(contact), comparison)
+    inferred = _inferred(curves, study, comparison)
+    return _with_records(inferred, study.boundary_layer.strength, comparison)
 
 
-def _inferred(curves, contact, comparison):
+def _inferred(curves, study, comparison):
     """Infer films, the pressure-viscosity coefficient and the boundary layer."""
     films = gauge_film(curves, comparison), gauge_coverage(curves, comparison)
-    fits = (fit(curves, contact, comparison) for fit in (fit_alpha, fit_layer_strength))
+    fits = (fit(curves, study, comparison) for fit in (fit_alpha, fit_layer_strength))
     return xr.merge((*films, *fits), join="exact", combine_attrs="drop")
 
 

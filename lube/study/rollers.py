@@ -294,3 +294,8 @@ class BoundaryLayer(StrictModel):
     """critical thickness h_c"""
     shear_strength: _Stress
     """limiting shear stress tau0"""
+
+    @property
+    def strength(self) -> float:
+        """Strength tau0 / h_c, Pa/m, its only property on which contact depends."""
+        return self.shear_strength / self.critical_thickness

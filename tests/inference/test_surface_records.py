@@ -12,6 +12,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_records import (
+    LAYER_FILMS,
     _by_formula,
     reading_errors,
     surface_curves,
@@ -22,6 +23,7 @@ from lube.stages import film_table
 from lube.study.oil_properties import lubricant_table
 
 CURVE = "curve_probability"
+FORCES = [1600.0, 900.0, 400.0, 900.0]
 GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (40.0,)}
 NUMBERS = [f"breakthrough_probability{limit}" for limit in LIMITS]
 
@@ -50,7 +52,7 @@ def plain(busy_study, few_surfaces):
 @pytest.fixture(scope="module")
 def found(plain):
     """Records on the grid, beside it, and twice the same."""
-    return at_records(*plain, [1600.0, 900.0, 400.0, 900.0])
+    return at_records(*plain, FORCES)
 
 
 def test_records_on_the_grid_have_the_values_of_areal_nc_and_are_not_sampled_again(plain, found):
@@ -58,7 +60,7 @@ def test_records_on_the_grid_have_the_values_of_areal_nc_and_are_not_sampled_aga
     halved = inputs["areal"].copy(deep=True)
     for limit in LIMITS:
         halved[f"breakthrough_probability{limit}"] /= 2.0
-    _, other = at_records(study, inputs | {"areal": halved}, [1600.0, 900.0, 400.0, 900.0])
+    _, other = at_records(study, inputs | {"areal": halved}, FORCES)
     stored = inputs["areal"].isel(film_formula=0).squeeze()
     for name, limit in zip(NUMBERS, LIMITS, strict=True):
         here = stored[f"breakthrough_probability{limit}"].values
@@ -100,6 +102,25 @@ def test_curves_are_those_of_other_films_at_the_same_width(plain, found):
     np.testing.assert_array_equal(surfaces[CURVE][:, 1], surfaces[CURVE][:, 3])
 
 
+def test_curves_of_other_layers_are_those_of_studies_with_them(plain, found):
+    study, inputs = plain
+    _, surfaces = found
+    strengths = surfaces["layer_strength"].values
+    own, stronger = study.boundary_layer, surfaces.isel(layer_strength=2)
+    assert strengths[0] == pytest.approx(own.strength)
+    ratio = stronger["layer_strength"].item() / own.strength
+    layer = own.model_copy(update={"shear_strength": ratio * own.shear_strength})
+    other = study.model_copy(update={"boundary_layer": layer})
+    changed = made(other, ("lubricant", "film", "areal"))
+    _, direct = at_records(other, inputs | {"areal": changed["areal"]}, FORCES)
+    shares = stronger["layer_curve_probability"]
+    np.testing.assert_array_equal(shares, direct[CURVE].values[LAYER_FILMS])
+    # With the own layer the curve is as without others, and stronger ones break more rarely.
+    by_layer = surfaces["layer_curve_probability"].values
+    np.testing.assert_array_equal(by_layer[0], surfaces[CURVE][LAYER_FILMS])
+    assert (np.diff(by_layer, axis=0) <= 0.0).all() and (by_layer[-1] < 0.6 * by_layer[0]).all()
+
+
 def test_a_share_of_a_curve_is_read_back_to_its_film(found):
     first, surfaces = found
     row = 3
@@ -124,7 +145,9 @@ def test_between_its_films_a_curve_is_that_of_independent_contacts():
     names = values_with_limits(CURVE, [share] * 3) | {"curve_sample_size": np.full(8, 900.0)}
     dims = "curve_lambda_ratio", "record"
     surfaces = xr.Dataset({name: (dims, each[:, None]) for name, each in names.items()})
-    surfaces = surfaces.assign_coords(curve_lambda_ratio=ratios)
+    surfaces = surfaces.assign_coords(curve_lambda_ratio=ratios, layer_lambda_ratio=ratios)
+    of_layers = ("layer_strength", "layer_lambda_ratio", "record"), share[None, :, None]
+    surfaces = surfaces.assign(layer_curve_probability=of_layers, layer_strength=[1e14])
     records = xr.Dataset({"film_thickness": (("film_formula", "record"), [[1e-6]])})
     (curve,) = surface_curves(surfaces, records, False).of_records
     for ratio in (3.2, 3.7, 4.4, 5.3):

@@ -36,7 +36,7 @@ def read(busy, compared, areal):
 
     def run(shares, force, areal=areal, **values):
         comparison = compared(experiment_of(shares, force, 100.0, 60.0, **values))
-        gauge = gauge_records(map_curves(busy.master, comparison), busy.contact, comparison)
+        gauge = gauge_records(map_curves(busy.master, comparison), busy.study, comparison)
         inputs = {"film": busy.film, "areal": areal, "comparison": comparison, "gauge": gauge}
         return make(busy.study, inputs)
 
@@ -63,7 +63,7 @@ def test_the_line_reads_as_in_the_gauge_and_the_quotient_is_of_both(busy, read, 
     shares = [0.3, 0.1]
     found = read(shares, 400.0)
     comparison = compared(experiment_of(shares, 400.0, 100.0, 60.0))
-    gauge = gauge_records(map_curves(busy.master, comparison), busy.contact, comparison)
+    gauge = gauge_records(map_curves(busy.master, comparison), busy.study, comparison)
     for limit in LIMITS:
         one, other = found[f"line_lambda_ratio{limit}"], gauge[f"gauged_lambda_ratio{limit}"]
         np.testing.assert_array_equal(one, other)

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 from experiments import (
+    LAYER_BREAKS,
+    LAYER_STRENGTHS,
     experiment_at,
     experiment_of,
     made_up_surfaces,
@@ -32,15 +33,15 @@ def coverage_by_map(busy, comparison):
 
 
 def gauge_by_map(busy, comparison):
-    return gauge_records(map_curves(busy.master, comparison), busy.contact, comparison)
+    return gauge_records(map_curves(busy.master, comparison), busy.study, comparison)
 
 
 def alpha_by_map(busy, comparison):
-    return fit_alpha(map_curves(busy.master, comparison), busy.contact, comparison)
+    return fit_alpha(map_curves(busy.master, comparison), busy.study, comparison)
 
 
 def strength_by_map(busy, comparison):
-    return fit_layer_strength(map_curves(busy.master, comparison), busy.contact, comparison)
+    return fit_layer_strength(map_curves(busy.master, comparison), busy.study, comparison)
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +132,7 @@ def test_records_with_slip_are_gauged_too_and_better(busy, at_point):
 
 def test_curves_of_the_records_own_films_say_what_the_map_says(busy, own):
     gauged = gauge_by_map(busy, own)
-    found = gauge_records(own_curves(busy.study, own), busy.contact, own)
+    found = gauge_records(own_curves(busy.study, own), busy.study, own)
     for limit in LIMITS:
         one, other = (each[f"gauged_lambda_ratio{limit}"].values for each in (found, gauged))
         # Where contact is most frequent, hardly anything tells films apart.
@@ -241,10 +242,10 @@ def test_a_factor_is_known_better_from_more_pairs_but_not_from_more_records_of_o
 
 
 def test_each_lubricant_has_its_own_fit(busy, own):
-    contact = xr.concat([busy.contact] * 2, "lubricant", data_vars="minimal")
-    oil = busy.contact["lubricant"].values.tolist()
-    contact = contact.assign_coords(lubricant=[*oil, "unused"])
-    found = fit_alpha(map_curves(busy.master, own), contact, own)
+    (oil,) = busy.study.lubricants
+    oils = oil, oil.model_copy(update={"name": "unused"})
+    study = busy.study.model_copy(update={"lubricants": oils})
+    found = fit_alpha(map_curves(busy.master, own), study, own)
     assert np.isfinite(found["alpha_factor"].isel(fitted_lubricant=0)).all()
     assert found["alpha_factor"].isel(fitted_lubricant=1).isnull().all()
 
@@ -332,7 +333,7 @@ def test_a_share_of_surfaces_is_gauged_back_to_its_film(busy, on_surfaces, compa
     assert lines.drop_attrs().equals(alone.drop_attrs())
 
 
-def test_the_coefficient_is_fitted_by_surfaces_and_the_layer_is_not(busy, on_surfaces):
+def test_the_coefficient_is_fitted_by_surfaces(busy, on_surfaces):
     """Eq. 3 as printed has the film in proportion to the coefficient to the power 0.53."""
     _, experiment = surface_experiment(busy, thinner=1.1)
     found = gauge_on_surfaces(busy, on_surfaces(experiment)).sel(contact_model="surface")
@@ -343,10 +344,23 @@ def test_the_coefficient_is_fitted_by_surfaces_and_the_layer_is_not(busy, on_sur
     assert lower < value < upper < 1.0
     assert (found["alpha_factor_lower"] < found["alpha_factor"]).all()
     assert (found["alpha_factor"] < found["alpha_factor_upper"]).all()
-    assert found["fitted_layer_strength"].isnull().all()
-    assert (found["fitted_layer_strength_lower"] == 0.0).all()
-    assert (found["fitted_layer_strength_upper"] == np.inf).all()
-    assert found["interval_coverage"].isnull().all()
+    for name in ("interval", "alpha_factor", "fitted_layer_strength"):
+        assert found[f"{name}_coverage"].isnull().all()
+
+
+def test_the_layer_is_fitted_by_surfaces_where_it_changes_contact(busy, on_surfaces):
+    ratios, _ = surface_experiment(busy)
+    for number, breaks in enumerate(LAYER_BREAKS):
+        shares = breaks * surface_probability(ratios)
+        experiment = experiment_at(busy.study.operating_grid.model_dump(), shares)
+        found = gauge_on_surfaces(busy, on_surfaces(experiment)).sel(contact_model="surface")
+        first = found.isel(film_formula=0, fitted_lubricant=0)
+        value, lower, upper = (first[f"fitted_layer_strength{limit}"].item() for limit in LIMITS)
+        strength = LAYER_STRENGTHS[number]
+        if 0 < number < 3:
+            assert value == pytest.approx(strength, rel=0.05)
+        assert lower <= strength <= upper
+        assert (lower == 0.0) == (number == 0) and (upper == np.inf) == (number == 3)
 
 
 def test_without_lines_films_are_gauged_as_with_them_and_alpha_less_exactly(
