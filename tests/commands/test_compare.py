@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from itertools import permutations
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -169,8 +169,8 @@ def test_datasets_of_every_kind_that_differ_in_everything_are_compared(datasets,
 
 
 @pytest.mark.slow
-def test_every_pair_of_unlike_studies_is_compared(unlike):
-    for one, other in permutations(STUDIES, 2):
+def test_each_of_unlike_studies_is_compared_with_the_next(unlike):
+    for one, other in pairwise([*STUDIES, next(iter(STUDIES))]):
         lines = list(compare_results(unlike(one), unlike(other)))
         assert lines and all(line.isprintable() for line in lines), (one, other)
         assert any("the studies differ in" in line for line in lines), (one, other)
