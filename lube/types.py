@@ -36,6 +36,7 @@ File = str | Path
 """Path of a file or folder."""
 Files = Iterable[File]
 FilmShape = Literal["flat", "computed"]
+InletHeating = Literal["none", "zhu-cheng-1988", "wilson-sheu-1983", "computed"]
 LoadSharing = Literal["none", "iterated"]
 Pair = tuple[Array, Array]
 """Two arrays, such as the lines of both rollers or both limits of an interval."""

@@ -12,7 +12,15 @@ from lube.grid.gap import PLAIN, Gap
 from lube.study.field_types import bounded
 from lube.study.rig_settings import RIG_REALISATIONS
 from lube.study.study import Study
-from lube.types import Amount, ContactModel, FilmShape, LoadSharing, RoughnessDeformation
+from lube.types import (
+    Amount,
+    ContactModel,
+    FilmShape,
+    InletHeating,
+    LoadSharing,
+    OneAmount,
+    RoughnessDeformation,
+)
 from lube.units import convert, parse_number, parse_quantity
 
 FORMULA = "pan-hamrock"
@@ -26,18 +34,20 @@ class Model(TypedDict):
     film_shape: FilmShape
     roughness_deformation: RoughnessDeformation
     contact_model: ContactModel
+    inlet_shear_heating: InletHeating
 
 
 COMPLETE: Model = {
     "film_formula": "computed",
     "film_shape": "computed",
+    "inlet_shear_heating": "computed",
     "roughness_deformation": "computed",
     "contact_model": "surface",
 }
 """The most complete model of this package: film, its shape and its response to the roughness by
-Reynolds' equation, and contact of the rollers' surfaces over their length. Answers for a notebook
-leave out heating at the inlet and starvation; the oil carries the whole load, unless the argument
-``load_sharing`` says otherwise."""
+Reynolds' equation, heating at the inlet, and contact of the rollers' surfaces over their length.
+The contact is fully flooded unless ``inlet_meniscus`` is given, and the oil carries the whole load
+unless ``load_sharing`` says otherwise."""
 REALISATIONS = 64
 SEED = 1
 Point = Mapping[str, xr.DataArray]
@@ -167,19 +177,28 @@ class Choices:
         Contact models.
     load_sharing : str
         ``none``, or ``iterated``: the asperities carry a share of the load.
+    inlet_shear_heating : str
+        How heating at the inlet thins the film, as in a study.
+    inlet_meniscus : float, optional
+        Distance of the oil's meniscus before the line of centres, m; None if the contact is fully
+        flooded.
     """
 
     gap: Gap = PLAIN
     models: tuple[ContactModel, ...] = ("line",)
     load_sharing: LoadSharing = "none"
+    inlet_shear_heating: InletHeating = "none"
+    inlet_meniscus: float | None = None
 
     @classmethod
     def of(
         cls,
-        film_shape: FilmShape,
-        roughness_deformation: RoughnessDeformation,
-        load_sharing: LoadSharing,
-        contact_model: ContactModel | Sequence[ContactModel],
+        film_shape: FilmShape = "flat",
+        roughness_deformation: RoughnessDeformation = "none",
+        contact_model: ContactModel | Sequence[ContactModel] = "line",
+        inlet_shear_heating: InletHeating = "none",
+        inlet_meniscus: OneAmount | None = None,
+        load_sharing: LoadSharing = "none",
     ) -> "Choices":
         """Choose by the values of a study's keys.
 
@@ -189,12 +208,15 @@ class Choices:
             If a study has no such choice.
         """
         gap = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
-        for name, value in (*gap.items(), ("load_sharing", load_sharing)):
+        film = {"load_sharing": load_sharing, "inlet_shear_heating": inlet_shear_heating}
+        for name, value in (gap | film).items():
             _check_choice(name, value, get_args(Study.model_fields[name].annotation))
         models = tuple(np.ravel(contact_model).tolist())
         for model in models or [contact_model]:
             _check_choice("contact_model", model, get_args(ContactModel))
-        return cls(Gap(**gap), models, load_sharing)
+        if inlet_meniscus is not None:
+            inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
+        return cls(Gap(**gap), models, **film, inlet_meniscus=inlet_meniscus)
 
 
 def _check_choice(name, value, options):

@@ -91,6 +91,8 @@ class Assumptions:
             film_formulas=(film_formula,),
             **asdict(choices.gap),
             load_sharing=choices.load_sharing,
+            inlet_shear_heating=choices.inlet_shear_heating,
+            inlet_meniscus=choices.inlet_meniscus or "none",
             contact_model=choices.models,
             seed=seed,
             uncertainty=uncertain,

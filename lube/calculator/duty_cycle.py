@@ -21,12 +21,12 @@ from lube.calculator.arguments import (
 )
 from lube.calculator.bands import Assumptions
 from lube.calculator.operating_points import (
-    FILM_VARIABLES,
     check_contact,
     ensemble,
     film_model,
     film_of_oil,
     joined,
+    of_film,
     of_surface,
     with_remarks,
 )
@@ -37,7 +37,15 @@ from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
-from lube.types import ContactModel, File, FilmShape, LoadSharing, RoughnessDeformation
+from lube.types import (
+    ContactModel,
+    File,
+    FilmShape,
+    InletHeating,
+    LoadSharing,
+    OneAmount,
+    RoughnessDeformation,
+)
 
 _COLUMNS = {
     "force": "N",
@@ -66,6 +74,8 @@ def duty(
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     load_sharing: LoadSharing = "none",
     contact_model: ContactModel | Sequence[ContactModel] = "line",
     realisations: int = REALISATIONS,
@@ -93,6 +103,8 @@ def duty(
         The oil.
     film_formula, film_shape, roughness_deformation, load_sharing, contact_model, realisations, seed
         As in `lube.contact_probability`.
+    inlet_shear_heating, inlet_meniscus
+        As in `lube.film`; each point has its own slip.
     bands : bool or dict, optional
         As in `lube.contact_probability`. All points of a sample share its deviations, as they have
         one oil, one pair of rollers and one thermometer.
@@ -135,7 +147,14 @@ def duty(
     share = columns.get("share", xr.ones_like(columns["force"]))
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
-    choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
+    choices = Choices.of(
+        film_shape,
+        roughness_deformation,
+        contact_model,
+        inlet_shear_heating,
+        inlet_meniscus,
+        load_sharing,
+    )
     check_realisations(realisations, seed)
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
     assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)
@@ -144,7 +163,7 @@ def duty(
     check_contact(rollers, turning.contact_half_width(given["force"]), choices)
     table = _film(given, turning, oil, formula, film_model(rollers, choices, slip))
     pair = rollers.rough_pair(seed, choices.gap)
-    share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
+    share, parts, whole = share / share.sum(), of_film(table), {}
     if "line" in choices.models:
         contact = ensemble(pair, table, realisations, 0.0)
         on_pairs = pair_probabilities(pair, table, slip)

@@ -82,7 +82,7 @@ class FilmSearch:
             rollers.lines.check_follows_rolling()
         self._sigma = rollers.pair.composite_rms_roughness
 
-    def along(self, table, levels, tried):
+    def along(self, table, levels, tried, is_rising=True):
         """Find the films that give the share, and the levels of a condition that give them.
 
         Parameters
@@ -93,6 +93,9 @@ class FilmSearch:
             Levels of the condition that are tried.
         tried : str
             These levels in words.
+        is_rising : bool, optional
+            Whether the film grows with the condition. Where heating at the inlet makes it shrink
+            again, levels beyond the thickest film are left out.
         """
         plain = replace(self._choices, gap=PLAIN)
         whole = table(levels, plain)
@@ -102,7 +105,8 @@ class FilmSearch:
         ratios = whole["lambda_ratio"].values
         known = np.flatnonzero(np.isfinite(ratios))
         check_known(known.size)
-        known = known[np.argsort(ratios[known])]
+        thickest = known[np.argmax(ratios[known])]
+        known = known[known <= thickest] if is_rising else known[known >= thickest][::-1]
 
         def table_at(sought, choices=self._choices):
             here = np.interp(sought, ratios[known], known)
@@ -113,7 +117,7 @@ class FilmSearch:
 
         ends = ratios[known[[0, -1]]]
         films = self.films(whole["contact_half_width"].item(), points_at, table_at, ends)
-        return films, _reached(films, whole, levels, tried)
+        return films, _reached(films, whole["film_thickness"].values[known], levels[known], tried)
 
     def films(self, half_width, points_at, table_at=None, ends=(0.0, np.inf), own=None):
         """Find the films at which the probability, its lower and its upper limit equal the share.
@@ -275,21 +279,18 @@ def _crossing(ratios, probabilities, share):
     return np.sqrt(film) if film > 0.0 else 0.0
 
 
-def _reached(films, table, levels, tried):
-    """Levels at which a table has the films.
+def _reached(films, thickness, levels, tried):
+    """Levels at which films have a thickness, of levels in the order of rising thickness.
 
-    Beyond the table a speed or viscosity is 0 or infinite, a temperature infinite of either sign.
+    Beyond them a speed or viscosity is 0 or infinite, a temperature infinite of either sign.
     """
-    known = table["film_thickness"].notnull().values
-    thickness, levels = np.log(table["film_thickness"].values[known]), levels[known]
-    rising = 1 if thickness[-1] > thickness[0] else -1
     # Films that rise with the level are those of a speed or viscosity, others of a temperature.
-    left, right = (0.0, np.inf) if rising == 1 else (np.inf, -np.inf)
+    left, right = (0.0, np.inf) if levels[-1] > levels[0] else (np.inf, -np.inf)
     with np.errstate(divide="ignore"):  # a lower limit may be 0
-        sought = np.log(films["film_thickness"])
-    if sought[0] > thickness.max():
-        film, most = 1e6 * np.exp([sought[0], thickness.max()])
+        sought, thickness = np.log(films["film_thickness"]), np.log(thickness)
+    if sought[0] > thickness[-1]:
+        film, most = 1e6 * np.exp([sought[0], thickness[-1]])
         needed = f"film of {film:.3g} um" if np.isfinite(film) else "thicker film"
         given = f"no {tried} gives more than {most:.3g} um"
         raise RangeError(f"share: this share needs a {needed}, and {given}")
-    return np.interp(sought, thickness[::rising], levels[::rising], left, right)
+    return np.interp(sought, thickness, levels, left, right)

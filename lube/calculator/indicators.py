@@ -6,12 +6,12 @@ import xarray as xr
 
 from lube.calculator.answers import Answer, variable_of
 from lube.calculator.arguments import FORMULA, amount, single
-from lube.calculator.operating_points import film_in_si, with_remarks
+from lube.calculator.operating_points import smooth_film, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.grid.films import FilmGroups
 from lube.grid.indicators import indicators as published
 from lube.physics.indicators import bearing_speed, viscosity_ratio
-from lube.types import Amount, OneAmount
+from lube.types import Amount, InletHeating, OneAmount
 
 
 @with_parts
@@ -23,6 +23,9 @@ def indicators(
     temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
+    slide_to_roll_ratio: float = 0.0,
     pitch_diameter: OneAmount | None = None,
 ) -> Answer:
     """Find indicators of lubrication by their published formulas, and the rolling resistance.
@@ -34,6 +37,8 @@ def indicators(
     ----------
     rollers, oil, force, speed, temperature, film_formula
         As in `film`.
+    inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        As in `film`; the rolling resistance is without heating.
     pitch_diameter : str, optional
         Pitch diameter of a rolling bearing, such as ``"200 mm"``; its viscosity ratio is found,
         too. `rollers` are its ring and, with the smaller radius, a rolling element; the bearing
@@ -64,7 +69,9 @@ def indicators(
     >>> f"{resistance.item():.2f} {resistance.attrs['units']}"
     '0.56 N'
     """
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
+    point = force, speed, temperature, film_formula
+    inlet = inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+    table = smooth_film(rollers, oil, *point, *inlet)
     pair, groups = rollers.pair, FilmGroups.of(table)
     scale = 2.0 * pair.reduced_modulus * pair.reduced_radius
     resistance = scale * groups.of_profiles("rolling_resistance")

@@ -21,7 +21,7 @@ from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.stages.trace import contact_trace
 from lube.study.oil_properties import lubricant_table
-from lube.types import FilmShape, OneAmount, RoughnessDeformation
+from lube.types import FilmShape, InletHeating, OneAmount, RoughnessDeformation
 
 
 @with_parts
@@ -35,6 +35,8 @@ def trace(
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     slide_to_roll_ratio: float = 0.0,
     seed: int = SEED,
 ) -> Answer:
@@ -42,7 +44,7 @@ def trace(
 
     Parameters
     ----------
-    rollers, oil, force, speed, temperature, film_formula
+    rollers, oil, force, speed, temperature, film_formula, inlet_shear_heating, inlet_meniscus
         As in `film`, one value of each.
     film_shape, roughness_deformation, slide_to_roll_ratio, seed
         As in `contact_probability`; the trace is that of realisation 0.
@@ -66,7 +68,9 @@ def trace(
     '120 ms'
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of(film_shape, roughness_deformation, "none", "line")
+    choices = Choices.of(
+        film_shape, roughness_deformation, "line", inlet_shear_heating, inlet_meniscus
+    )
     one = _one_point(rollers, oil, force, speed, temperature)
     check_contact(rollers, rollers.pair.contact_half_width(*one[2]), choices)
     model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}

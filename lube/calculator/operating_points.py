@@ -1,6 +1,7 @@
 """Film, probability of contact and resistance at operating points."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,12 +35,24 @@ from lube.study.rollers import RollerPair
 from lube.study.surface_checks import check_surfaces
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
-from lube.types import Amount, ContactModel, FilmShape, LoadSharing, RoughnessDeformation, Values
+from lube.types import (
+    Amount,
+    ContactModel,
+    FilmShape,
+    InletHeating,
+    LoadSharing,
+    OneAmount,
+    RoughnessDeformation,
+    Values,
+)
+from lube.units import with_unit
 
-FILM_VARIABLES = (
+_FILM = (
     "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
     "entrainment_speed dynamic_viscosity"
 ).split()
+_THINNING = "inlet_shear_heating_factor", "starvation_factor"
+"""Factors by which the film is thinner, where they are asked for."""
 _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
 
@@ -52,6 +65,9 @@ def film(
     temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
+    slide_to_roll_ratio: float = 0.0,
 ) -> Answer:
     """Film thickness, lambda ratio and regime.
 
@@ -71,14 +87,24 @@ def film(
         Temperature of rollers and oil, such as ``"60 degC"``.
     film_formula : str or sequence of str, optional
         Keys of `lube.FORMULAS`.
+    inlet_shear_heating : str, optional
+        How heating of the oil at the inlet thins the film, the more so the more the rollers slip:
+        ``"none"``; ``"zhu-cheng-1988"`` or ``"wilson-sheu-1983"`` by a formula; or ``"computed"``,
+        by the equation behind the latter.
+    inlet_meniscus : str, optional
+        Distance of the oil's meniscus before the line of centres, such as ``"1 mm"``, more than the
+        half-width of the contact. Without it the contact is fully flooded.
+    slide_to_roll_ratio : float, optional
+        Difference of the surface speeds over their mean, on which the heating depends.
 
     Returns
     -------
     Answer
-        The film in customary units. Its dimensions are those of film_formula, temperature, speed
-        and force that have several values. Like ``lube check``, its attribute ``remarks`` has a
-        line for each value that may be a mistake or is beyond the limits of the model, by the first
-        film formula.
+        The film in customary units, with ``inlet_shear_heating_factor`` and ``starvation_factor``,
+        by which heating and starvation thin it, where they are asked for. Its dimensions are those
+        of film_formula, temperature, speed and force that have several values. Like ``lube
+        check``, its attribute ``remarks`` has a line for each value that may be a mistake or is
+        beyond the limits of the model, by the first film formula.
 
     Raises
     ------
@@ -92,8 +118,33 @@ def film(
     >>> f"{found.film_thickness.item():.2f} um, lambda ratio {found.lambda_ratio.item():.1f}"
     '1.05 um, lambda ratio 3.7'
     """
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
-    return with_remarks(table[FILM_VARIABLES], table, rollers)
+    point = force, speed, temperature, film_formula
+    inlet = inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+    table = smooth_film(rollers, oil, *point, *inlet)
+    return with_remarks(of_film(table), table, rollers)
+
+
+def smooth_film(
+    rollers: Rollers,
+    oil: Oil,
+    force: Amount,
+    speed: Amount,
+    temperature: Amount,
+    film_formula: str | Sequence[str],
+    inlet_shear_heating: InletHeating,
+    inlet_meniscus: OneAmount | None,
+    slide_to_roll_ratio: float,
+) -> xr.Dataset:
+    """As `film_in_si`, with the arguments of `film`: without contact, which lines may not have."""
+    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
+    choices = Choices.of(inlet_shear_heating=inlet_shear_heating, inlet_meniscus=inlet_meniscus)
+    choices = replace(choices, models=())
+    return film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
+
+
+def of_film(table: xr.Dataset) -> xr.Dataset:
+    """Variables of a film table that answers have."""
+    return table[[*_FILM, *(name for name in _THINNING if name in table)]]
 
 
 def film_in_si(
@@ -103,7 +154,7 @@ def film_in_si(
     speed: Amount,
     temperature: Amount,
     film_formula: str | Sequence[str],
-    choices: Choices | None = None,
+    choices: Choices,
     slip: float = 0.0,
 ) -> xr.Dataset:
     """All variables of the film table in SI units, and the oil's viscosity.
@@ -112,9 +163,8 @@ def film_in_si(
     """
     point = conditions(force, speed, temperature, rollers.pair.first.radius)
     formulas = _names(film_formula)
-    if choices:
-        check_contact(rollers, rollers.pair.contact_half_width(point["force"].values), choices)
-    model = film_model(rollers, choices or Choices(), slip)
+    check_contact(rollers, rollers.pair.contact_half_width(point["force"].values), choices)
+    model = film_model(rollers, choices, slip)
     table = film_of_oil(oil, rollers.pair, point, formulas, **model)
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.assign_coords(force=point["force"], speed=point["speed"])
@@ -138,9 +188,14 @@ def check_contact(rollers: Rollers, half_width: Values, choices: Choices) -> Non
     ------
     LubeError
         As from `lube.study.surface_checks.check_surfaces`; or that a contact is finer than the grid
-        or wider than a roller's perimeter, or that no line stands for the rollers.
+        or wider than a roller's perimeter, or reaches the meniscus, or that no line stands for the
+        rollers.
     """
     spec, widest = rollers.lines, 2.0 * np.max(half_width).item()
+    meniscus = choices.inlet_meniscus
+    if meniscus is not None and meniscus <= 0.5 * widest:
+        needed = f"more than {with_unit(0.5 * widest, 'm', 3)}, the half-width of the contact"
+        raise StudyError(f"inlet_meniscus: got {with_unit(meniscus, 'm', 3)}, need {needed}")
     if "line" in choices.models:
         for width in (2.0 * np.min(half_width).item(), widest):
             spec.check_width(width, "force: the contact")
@@ -168,6 +223,8 @@ def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any
         "slide_to_roll_ratio": slip,
         "rough_surfaces": rollers.lines if has_surfaces else None,
         "load_sharing": choices.load_sharing,
+        "inlet_shear_heating": choices.inlet_shear_heating,
+        "inlet_meniscus": choices.inlet_meniscus,
         **{answered[model]: rollers.lines for model in used},
     }
 
@@ -175,9 +232,22 @@ def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any
 def film_of_oil(
     oil: Oil, pair: RollerPair, point: Point, formulas: Sequence[str], **choices: Any
 ) -> xr.Dataset:
-    """Film table with the oil's viscosity; the point's numbers are in N, rpm and degC."""
-    properties = oil.at(point["temperature"])
+    """Film table with the oil's viscosity; the point's numbers are in N, rpm and degC.
+
+    Raises
+    ------
+    StudyError
+        If the inlet heats up, and the oil's thermal conductivity is not known.
+    """
+    properties, heating = oil.at(point["temperature"]), choices["inlet_shear_heating"]
+    if heating != "none" and properties["thermal_conductivity"].isnull().any():
+        needed = "need none, or an oil with thermal_conductivity"
+        raise StudyError(f"inlet_shear_heating: got {heating}, {needed}")
     table = film_at(properties, pair, point["force"], point["speed"], formulas, **choices)
+    if heating == "none":
+        del table["inlet_shear_heating_factor"]
+    if choices["inlet_meniscus"] is not None:
+        table["inlet_meniscus"] = choices["inlet_meniscus"]
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 
@@ -199,6 +269,11 @@ def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answ
         With the attribute ``remarks``, one line for each remark.
     """
     notes = [found.attrs.get("remarks"), *remarks(table, rollers.lines, rollers.pair)]
+    if halved := int((table.get("inlet_shear_heating_factor", xr.DataArray(1.0)) < 0.5).sum()):
+        notes.append(
+            f"inlet_shear_heating: at {halved} operating points the film is less than half as "
+            "thick, where no model of the heating is reliable"
+        )
     return described(found.assign_attrs(remarks="\n".join(filter(None, notes))))
 
 
@@ -213,6 +288,8 @@ def contact_probability(
     film_formula: str | Sequence[str] = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel | Sequence[ContactModel] = "line",
@@ -243,12 +320,15 @@ def contact_probability(
         ``"none"``; ``"computed"``: the oil deforms each wave of the roughness by Reynolds'
         equation, which takes some seconds for each operating point; or ``"venner-1997"``: it
         flattens long waves of lines by a formula for Moes' load numbers above 20.
+    inlet_shear_heating, inlet_meniscus
+        As in `film`.
     load_sharing : str, optional
         ``"none"``, the oil carries the whole load; or ``"iterated"``, the asperities of the
         rollers' surfaces carry a share of it, and the film is that of the rest.
     slide_to_roll_ratio : float, optional
         Difference of the surface speeds over their mean. It changes the computing time and the
-        scatter, and with ``roughness_deformation="computed"`` also the expected probability.
+        scatter, and with heating at the inlet or ``roughness_deformation="computed"`` also the
+        expected probability.
     contact_model : str or sequence of str, optional
         ``"line"``; ``"surface"``, the isotropic rough surface that the line stands for, over the
         length of the rollers, which takes half a minute; or a list of both. The surface needs
@@ -283,9 +363,10 @@ def contact_probability(
 
         For the surface, by importance sampling: ``surface_breakthrough_probability`` and
         ``surface_geometric_contact_probability``, anywhere along the rollers, and the mean numbers
-        ``surface_breakthroughs`` and ``surface_contacts`` at any moment, each with ``_lower`` and
-        ``_upper``. By theory: ``surface_load_share``, the share of the load that their asperities
-        would carry; ``surface_pair_deviation``, the standard deviation of the share of
+        ``surface_breakthroughs`` and ``surface_contacts`` at any moment, and the part of the
+        contact's area where the layer is broken, ``surface_breakdown_ratio``, each with ``_lower``
+        and ``_upper``. By theory: ``surface_load_share``, the share of the load that their
+        asperities would carry; ``surface_pair_deviation``, the standard deviation of the share of
         one pair of rollers in a revolution of pure rolling, and
         ``surface_breakthrough_probability_pair_lower`` and ``_pair_upper``, between which this
         share lies in 95 % of cases; ``surface_passage_width``, over which the rollers move
@@ -312,13 +393,20 @@ def contact_probability(
     True
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
+    choices = Choices.of(
+        film_shape,
+        roughness_deformation,
+        contact_model,
+        inlet_shear_heating,
+        inlet_meniscus,
+        load_sharing,
+    )
     pair = rollers.rough_pair(seed, choices.gap)
     check_realisations(realisations, seed)
     assumed = Assumptions(bands, rollers, oil, choices, _names(film_formula)[0], seed)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
-    found = table[FILM_VARIABLES]
+    found = of_film(table)
     if "line" in choices.models:
         contact = ensemble(pair, table, realisations, slip)
         on_pairs = pair_probabilities(pair, table, slip)
@@ -335,8 +423,12 @@ def contact_probability(
 
 
 def conditions_of(table: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Force in N, speed in rpm and temperature in degC of a table from `film_in_si`."""
-    return {name: table[name] for name in ("force", "speed", "temperature")}
+    """Force in N, speed in rpm and temperature in degC of a table from `film_in_si`.
+
+    And ``viscosity_factor`` if the table has it.
+    """
+    names = "force", "speed", "temperature", "viscosity_factor"
+    return {name: table[name] for name in names if name in table.coords}
 
 
 def of_surface(
@@ -356,7 +448,7 @@ def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.D
     """Film, counted probabilities, and sampled ones, whose names begin with ``tail_``."""
     sampled = pair_limits(on_pairs)
     tail = {f"tail_{name}": values for name, values in sampled.items()}
-    found = table[FILM_VARIABLES].assign(dict(contact.data_vars) | tail)
+    found = of_film(table).assign(dict(contact.data_vars) | tail)
     return found.assign_attrs(contact.attrs | sampled.attrs)
 
 

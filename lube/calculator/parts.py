@@ -54,7 +54,8 @@ _TAKEN_BY = {
     "bands": "only contact_probability, duty and the required_ functions take it",
     "contact_model": "only contact_probability, duty, plan and the required_ functions take it",
     "load_sharing": "only contact_probability and duty take it: the oil carries the whole load",
-    "slide_to_roll_ratio": "only contact_probability, trace and plan take it; duty: both speeds",
+    "slide_to_roll_ratio": "only film, indicators, contact_probability, trace and plan take it; "
+    "duty: both speeds",
 }
 """Choices that some functions lack, and which have them."""
 _Function = TypeVar("_Function", bound=Callable)
@@ -303,6 +304,8 @@ class Oil:
     pressure_viscosity : str, optional
         Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, the slope at
         atmospheric pressure, in place of the base oil's.
+    thermal_conductivity : str, optional
+        Without a record: for the heating at the inlet, by default 0.14 W/(m K), as of mineral oils.
     temperature_range : sequence of str or tuple, optional
         Lowest and highest temperature at which the oil may be used, such as
         ``["20 degC", "120 degC"]``; by default those of its data. Beyond the data the viscosity is
@@ -334,13 +337,19 @@ class Oil:
         density: str | None = None,
         base: str | None = None,
         pressure_viscosity: str | None = None,
+        thermal_conductivity: str | None = None,
         temperature_range: Amount | None = None,
     ) -> None:
         if (name is None) == (viscosity is None):
             came = "neither" if name is None else "both"
             needed = "need either the name of a lubricant record or viscosity={...}"
             raise RecordError(f"Oil: got {came}, {needed}")
-        own = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
+        own = {
+            "density": density,
+            "base": base,
+            "pressure_viscosity": pressure_viscosity,
+            "thermal_conductivity": thermal_conductivity,
+        }
         if name is None:
             self.record = _record(viscosity, **own)
         else:
@@ -395,7 +404,7 @@ class Oil:
         return f"<Oil: {self.record.title}, valid from {lowest:g} to {highest:g} degC>"
 
 
-def _record(viscosity, density, base, pressure_viscosity):
+def _record(viscosity, density, base, pressure_viscosity, thermal_conductivity):
     """Lubricant record for given viscosities."""
     base = base_oil(base or "mineral")
     if base not in list(GOLD_BASES):
@@ -410,6 +419,10 @@ def _record(viscosity, density, base, pressure_viscosity):
         "viscosity": {"source": _SOURCE, "points": _points(viscosity)},
         "density": density | {"source": _SOURCE},
         "pressure_viscosity": alpha,
+        "thermal_conductivity": {
+            "source": _SOURCE,
+            "value": thermal_conductivity or "0.14 W/m/K",
+        },
     }
     record = validate(LubricantRecord, content, "Oil", RecordError)
     check_points(record, "Oil")

@@ -16,7 +16,7 @@ from lube.calculator.arguments import (
     check_realisations,
     one_name,
 )
-from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
+from lube.calculator.operating_points import ensemble, film_in_si, of_film, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import sample_size
 from lube.contact.surface_strip import SURFACES, surface_contact
@@ -39,7 +39,14 @@ from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import Revolution
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.surfaces.synthetic import draw_realisation
-from lube.types import Amount, ContactModel, FilmShape, RoughnessDeformation
+from lube.types import (
+    Amount,
+    ContactModel,
+    FilmShape,
+    InletHeating,
+    OneAmount,
+    RoughnessDeformation,
+)
 
 
 @with_parts
@@ -53,6 +60,8 @@ def plan(
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     turns: float | Sequence[float] = 1.0,
@@ -69,7 +78,7 @@ def plan(
 
     Parameters
     ----------
-    rollers, oil, force, speed, temperature
+    rollers, oil, force, speed, temperature, inlet_shear_heating, inlet_meniscus
         As in `lube.film`.
     film_formula, film_shape, roughness_deformation, slide_to_roll_ratio, realisations, seed
         As in `lube.contact_probability`; one film formula. Realisations are those of lines.
@@ -112,7 +121,9 @@ def plan(
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else ["line", model]
-    choices = Choices.of(film_shape, roughness_deformation, "none", models)
+    choices = Choices.of(
+        film_shape, roughness_deformation, models, inlet_shear_heating, inlet_meniscus
+    )
     check_realisations(realisations, seed)
     formula = one_name("film_formula", film_formula)
     table = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
@@ -130,11 +141,13 @@ def plan(
         found, ratio = slopes(pair, table), line_ratios(pair, table, slip, records)
     error = relative_error(found.probability, size, ratio[:, None], reading)
     oils, dims = oil.at(table["temperature"]), table["film_thickness"].dims
-    slope = film_by_coefficient(oils, rollers.pair, table["force"], table["speed"], formula)
+    given = oils, rollers.pair, table["force"], table["speed"], formula
+    # Heating does not depend on the coefficient.
+    slope = film_by_coefficient(*given, inlet_meniscus=choices.inlet_meniscus)
     by_coefficient = slope.transpose(*dims).values.ravel()
     widths = half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
     shape, read = table["film_thickness"].shape, (*thresholds.dims, *dims)
-    answer = table[FILM_VARIABLES].assign_coords(quantity=list(QUANTITIES))
+    answer = of_film(table).assign_coords(quantity=list(QUANTITIES))
     answer = answer.assign_coords(turns.coords).assign_coords(thresholds.coords)
     answer["breakthrough_probability"] = dims, found.probability.reshape(shape)
     sizes = len(QUANTITIES), *turns.shape, *thresholds.shape, *shape

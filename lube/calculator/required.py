@@ -31,7 +31,7 @@ from lube.ehl.film_formulas import formula
 from lube.grid.film_profiles import scaled_film
 from lube.physics.pressure_laws import ROELANDS_VISCOSITY
 from lube.schema import LIMITS, values_with_limits
-from lube.types import ContactModel, FilmShape, OneAmount, RoughnessDeformation
+from lube.types import ContactModel, FilmShape, InletHeating, OneAmount, RoughnessDeformation
 
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
@@ -93,7 +93,7 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    choices = Choices.of("flat", "none", "none", contact_model)
+    choices = Choices.of(contact_model=contact_model)
     left_out = "oil", "film", "speed", "temperature"
     assumed = Assumptions(bands, rollers, Oil(_ANY_OIL), choices, FORMULA, seed, left_out)
     search = FilmSearch(assumed, share, realisations)
@@ -119,6 +119,8 @@ def required_viscosity(
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -131,6 +133,8 @@ def required_viscosity(
     rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each. The pressure-viscosity coefficient and
         the density are those of the oil at that temperature.
+    inlet_shear_heating, inlet_meniscus
+        As in `lube.film`, in pure rolling.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -153,14 +157,17 @@ def required_viscosity(
 
     def table(factors, choices):
         # Formulas depend on the product of viscosity and speed, so the speed is varied for both.
-        speeds = rotation * factors, "rpm"
-        if choices.gap.is_plain and not formula(one).depends_on_oil:
+        # Heating does not.
+        speeds, is_heated = (rotation * factors, "rpm"), choices.inlet_shear_heating != "none"
+        if choices.gap.is_plain and not (is_heated or formula(one).depends_on_oil):
             return film_in_si(rollers, oil, force, speeds, temperature, one, choices)
         thicker = _Thicker(oil, xr.DataArray(factors, dims="factor"))
         found = film_in_si(rollers, thicker, force, speed, temperature, one, choices)
-        return found.assign_coords(speed=("factor", speeds[0]))
+        return found.assign_coords(viscosity_factor=("factor", factors))
 
-    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    choices = Choices.of(
+        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
     search = FilmSearch(assumed, share, realisations)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
@@ -182,6 +189,8 @@ def required_speed(
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -193,6 +202,8 @@ def required_speed(
     ----------
     rollers, oil, force, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
+    inlet_shear_heating, inlet_meniscus
+        As in `lube.film`, in pure rolling.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -214,7 +225,9 @@ def required_speed(
     def table(speeds, choices):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
 
-    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    choices = Choices.of(
+        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
     search = FilmSearch(assumed, share, realisations)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
@@ -233,6 +246,8 @@ def required_temperature(
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -244,6 +259,8 @@ def required_temperature(
     ----------
     rollers, oil, force, speed, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
+    inlet_shear_heating, inlet_meniscus
+        As in `lube.film`, in pure rolling.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -266,11 +283,13 @@ def required_temperature(
     def table(temperatures, choices):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
 
-    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    choices = Choices.of(
+        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
     search = FilmSearch(assumed, share, realisations)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
-    films, found = search.along(table, levels, "temperature of this oil")
+    films, found = search.along(table, levels, "temperature of this oil", is_rising=False)
     return _labelled({"temperature": found} | films)
 
 
@@ -286,6 +305,8 @@ def required_roughness(
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -301,6 +322,8 @@ def required_roughness(
     ----------
     rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
+    inlet_shear_heating, inlet_meniscus
+        As in `lube.film`, in pure rolling.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -318,7 +341,9 @@ def required_roughness(
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
     one = one_name("film_formula", film_formula)
-    choices = Choices.of(film_shape, roughness_deformation, "none", contact_model)
+    choices = Choices.of(
+        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
     search = FilmSearch(assumed, share, realisations)
     film = film_in_si(rollers, oil, force, speed, temperature, one, choices)

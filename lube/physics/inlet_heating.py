@@ -6,13 +6,15 @@ S. In pure rolling they agree; with slip they do not. At Q = 1 and S = 0.5 the p
 their formula gives 0.54.
 """
 
+from typing import get_args
+
 import numpy as np
 
 from lube.physics.hertz import hertz_gap
 from lube.physics.starvation import inlet_integral
-from lube.types import Array, Values
+from lube.types import Array, InletHeating, Values
 
-INLET_HEATING = ("none", "zhu-cheng-1988", "wilson-sheu-1983", "computed")
+INLET_HEATING = get_args(InletHeating)
 """Models of inlet heating that a study may choose."""
 _REACH, _NEAREST, _STEPS = 1e3, 1e-7, 200
 """Distances before the contact, over the length of the inlet, at which the integration begins and

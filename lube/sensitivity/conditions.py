@@ -109,7 +109,9 @@ class Deviating:
         ranges = [record.valid_temperatures for record in study.lubricants]
         coldest = max(min(levels) + lower, *(one[0] for one in ranges))
         hottest = min(max(levels) + upper, *(one[1] for one in ranges))
-        temperature = np.linspace(coldest, max(hottest, coldest + 1.0), NODES)
+        # At a single temperature over a kelvin, as far as the data reach.
+        hottest = min(max(hottest, coldest + 1.0), *(one[1] for one in ranges))
+        temperature = np.linspace(min(coldest, hottest - 1.0), hottest, NODES)
         table = lubricant_table(study.lubricants, temperature)[OIL].drop_attrs()
         definitions = study.uncertainty.pressure_viscosity_definition
         slopes = [_slope_ratio(table, each) for each in definitions.choices] if definitions else []
@@ -149,8 +151,9 @@ class Deviating:
         points : xarray.Dataset
             ``lubricant``, ``temperature``, ``speed`` and ``force``, over run too, or over point;
             also ``radius`` and ``second_radius``, m, and ``slide_to_roll_ratio`` if they are not
-            the study's. A ``film_thickness``, m, takes the place of the oil's. With a
-            ``roughness_factor`` on all heights films are over that factor.
+            the study's. A ``film_thickness``, m, takes the place of the oil's. The oils'
+            viscosities are multiplied by a ``viscosity_factor``. With a ``roughness_factor`` on all
+            heights films are over that factor.
         **shape
             Further arguments of `lube.grid.films.film_at`.
 
@@ -188,6 +191,7 @@ class Deviating:
         if "pressure_viscosity_definition" in values:
             chosen = oil["slope_ratio"].isel(definition=values["pressure_viscosity_definition"])
             oil = oil.drop_vars("slope_ratio").assign({OIL[1]: oil[OIL[1]] * chosen})
+        oil[OIL[0]] = oil[OIL[0]] * points.get("viscosity_factor", 1.0)
         loads = points["force"] * (1.0 + values.get("force", 0.0))
         speeds = points["speed"] * (1.0 + values.get("speed", 0.0))
         table = film_at(

@@ -9,7 +9,7 @@ stage and those after it.
 import math
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Field, StrictInt, WithJsonSchema, field_validator, model_validator
 from pydantic_core import to_jsonable_python
@@ -18,7 +18,6 @@ from lube.errors import StudyError, located, shown
 from lube.grid.gap import Gap
 from lube.grid.levels import SAME, level_index, rolling
 from lube.physics.electrical import divider_voltage
-from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
 from lube.study.line_spec import LineSpec, band_in_words, line_spec
@@ -31,7 +30,14 @@ from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes
 from lube.study.uncertainty import FilmFormula, Uncertainty
-from lube.types import ContactModel, File, FilmShape, LoadSharing, RoughnessDeformation
+from lube.types import (
+    ContactModel,
+    File,
+    FilmShape,
+    InletHeating,
+    LoadSharing,
+    RoughnessDeformation,
+)
 from lube.units import with_unit
 
 
@@ -67,7 +73,7 @@ class Study(StrictModel):
     """flat, and cut off at the edges of the contact, as in the paper; or computed by Reynolds'
     equation, with the gap outside the contact
     """
-    inlet_shear_heating: Literal[INLET_HEATING] = "none"
+    inlet_shear_heating: InletHeating = "none"
     """how heating of the oil at the inlet thins the film, the more so the more the rollers slip: by
     the formula of Zhu and Cheng (1988) or that of Wilson and Sheu (1983), which differ with slip,
     or by the equation behind the latter

@@ -14,12 +14,11 @@ from pydantic import Field, field_validator, model_validator
 
 from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, located, shown
-from lube.physics.inlet_heating import INLET_HEATING
 from lube.physics.pressure_viscosity import DEFINITIONS
 from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import ROLLERS
-from lube.types import ContactModel, FilmShape
+from lube.types import ContactModel, FilmShape, InletHeating
 from lube.units import parse_number, parse_quantity, with_unit
 
 BEYOND = 5.0
@@ -178,7 +177,7 @@ class OfShape(Choice[FilmShape]):
     """Shapes of the film."""
 
 
-class OfHeating(Choice[Literal[INLET_HEATING]]):
+class OfHeating(Choice[InletHeating]):
     """Models of the heating at the inlet."""
 
 

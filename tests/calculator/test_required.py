@@ -10,7 +10,9 @@ from made import on_few_surfaces
 import lube
 from lube import LubeError, Rollers
 from lube.calculator import film_search, required
+from lube.calculator.arguments import FORMULA
 from lube.calculator.operating_points import ensemble
+from lube.grid.films import film_at
 from lube.grid.gap import PLAIN
 
 RUNS = {"realisations": 32, "seed": 2}
@@ -71,6 +73,24 @@ def test_the_viscosity_gives_that_film(rollers, oil, needed):
     density = oil.properties("60 degC")["density"].item()
     kinematic = found["kinematic_viscosity"].item() * 1e-6 * density * 1e3
     assert kinematic == pytest.approx(found["dynamic_viscosity"].item())
+
+
+def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers, oil):
+    """Beyond some speed heating makes the film thinner again: the answer lies below."""
+    inlet = {"inlet_shear_heating": "computed", "inlet_meniscus": "0.5 mm"}
+    given = inlet | RUNS | {"share": SHARE}
+    found = lube.required_speed(rollers, oil, **without("speed"), **given)
+    speeds = found["speed"].item() * np.array([1.0, 1.2, 1e3]), "rpm"
+    films = lube.film(rollers, oil, **without("speed"), speed=speeds, **inlet)["film_thickness"]
+    assert films[0].item() == pytest.approx(found["film_thickness"].item(), rel=1e-3)
+    assert films[0] < films[1] and films[2] < films[1]
+    found = lube.required_viscosity(rollers, oil, **POINT, **given)
+    viscosity = 1e-3 * found["dynamic_viscosity"].item()
+    properties = oil.at(xr.DataArray(60.0)).assign(dynamic_viscosity=viscosity)
+    levels = xr.DataArray(400.0), xr.DataArray(100.0), [FORMULA]
+    inlet["inlet_meniscus"] = 0.5e-3
+    film = film_at(properties, rollers.pair, *levels, **inlet)["film_thickness"].item()
+    assert 1e6 * film == pytest.approx(found["film_thickness"].item(), rel=1e-3)
 
 
 def of_roughness(rms, spec):

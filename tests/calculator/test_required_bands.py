@@ -49,6 +49,18 @@ def test_what_is_nearly_known_has_a_narrow_band_around_the_answer(rollers, oil, 
         assert without.equals(found.drop_vars([each for each in found if "assumed" in each]))
 
 
+def test_the_band_of_a_viscosity_at_a_heated_inlet_is_around_the_answer(rollers, oil, monkeypatch):
+    """The heating changes with the viscosity otherwise than with the speed."""
+    monkeypatch.setitem(bands.SAMPLES, "line", 4)
+    ranges = uncertain("force", "+- 0.001 %")
+    for speed in ("10 m/s", "100 rpm"):
+        given = POINT | {"speed": speed, "temperature": "100 degC"}
+        heated = {"inlet_shear_heating": "computed", "bands": ranges, "share": 1e-6}
+        found = lube.required_viscosity(rollers, oil, **given, **heated, **RUNS)
+        for limit in assumed(found, "dynamic_viscosity"):
+            assert limit == pytest.approx(found["dynamic_viscosity"].item(), rel=0.02)
+
+
 @pytest.mark.parametrize(
     ("inverse", "name", "changed", "ranges", "ends"),
     [
