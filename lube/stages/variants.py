@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
+from lube.contact.ensemble import PROBABILITIES
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
@@ -219,17 +220,17 @@ def _counted(variants, windows, study, threads):
 
 def _on_surface(variant, film, own, study, threads):
     """Probabilities on surfaces, and their ratios to the study's own, which are independent."""
-    names = "breakthrough_probability", "geometric_contact_probability"
     unknown = np.full(film["film_thickness"].size, np.nan)
-    found = {f"{name}{end}": unknown for name in names for end in LIMITS}
+    found = {f"{name}{end}": unknown for name in PROBABILITIES for end in LIMITS}
     if study.has("surface_response") and variant.gap.is_on_surfaces:
         pair = replace(RoughPair.of(study), gap=variant.gap)
         contact = surface_contact(pair, film, threads)
         found = {name: contact[name].transpose(*POINT_DIMS).values.ravel() for name in found}
+    name = "breakthrough_probability"
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = found[names[0]] / own[names[0]]
+        ratio = found[name] / own[name]
         half_widths = [
-            (each[f"{names[0]}_upper"] - each[f"{names[0]}_lower"]) / (2.0 * each[names[0]])
+            (each[f"{name}_upper"] - each[f"{name}_lower"]) / (2.0 * each[name])
             for each in (found, own)
         ]
         error = np.hypot(*half_widths)
