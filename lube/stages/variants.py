@@ -23,12 +23,7 @@ from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
 from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
-from lube.statistics.confidence import (
-    breakthrough_limit,
-    mean_interval,
-    probability_interval,
-    ratio_interval,
-)
+from lube.statistics import confidence
 from lube.study.study import Study
 from lube.surfaces.rare_contact import WINDOWS
 from lube.surfaces.synthetic import draw_realisation
@@ -200,8 +195,8 @@ def _sampled(variants, windows, study, threads):
     """Probabilities by importance sampling."""
     pairs = study.line_spec, study.seed, PAIRS, threads
     values = np.stack([windows[each].on_pairs(*pairs) for each in variants], axis=1)
-    mean, lower, upper = mean_interval(values, 1.0)
-    upper[:, 1] = breakthrough_limit(upper[:, 1], upper[:, 0], WINDOWS * PAIRS)
+    mean, lower, upper = confidence.mean_interval(values, 1.0)
+    upper[:, 1] = confidence.breakthrough_limit(upper[:, 1], upper[:, 0], WINDOWS * PAIRS)
     return _with_limits(variants, values, (mean, lower, upper))
 
 
@@ -215,7 +210,7 @@ def _counted(variants, windows, study, threads):
     values = np.array(on_threads(run, range(study.realisations), threads))
     widths = (2 * windows[variants[0]].half_windows + 1) * study.line_spec.spacing
     independent = study.line_spec.independent_windows(widths)
-    return _with_limits(variants, values, probability_interval(values, independent))
+    return _with_limits(variants, values, confidence.probability_interval(values, independent))
 
 
 def _on_surface(variant, film, own, study, threads):
@@ -248,7 +243,7 @@ def _count(variant, windows, pair):
 def _with_limits(variants, values, means):
     """Probabilities of each variant, and their ratios to those of the first on the same lines."""
     contact, breakthrough = np.moveaxis(np.array(means), 2, 0)
-    ratio = np.array(ratio_interval(values[:, :, 1], values[:, :1, 1]))
+    ratio = np.array(confidence.ratio_interval(values[:, :, 1], values[:, :1, 1]))
     return {
         each: values_with_limits("geometric_contact_probability", contact[:, at])
         | values_with_limits("breakthrough_probability", breakthrough[:, at])
