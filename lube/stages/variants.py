@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.ensemble import PROBABILITIES
-from lube.contact.rough_pair import RoughPair
+from lube.contact.rough_pair import RoughPair, drawn
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.ehl.response import at_wavelengths
@@ -26,7 +26,6 @@ from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
 from lube.statistics import confidence
 from lube.study.study import Study
 from lube.surfaces.rare_contact import WINDOWS
-from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 from lube.types import Datasets
 
@@ -204,7 +203,7 @@ def _counted(variants, windows, study, threads):
     """Probabilities counted on the study's realisations."""
 
     def run(number):
-        pair = draw_realisation(study.line_spec, study.seed, number)
+        pair = drawn(study, number)
         return [_count(each, windows[each], pair) for each in variants]
 
     values = np.array(on_threads(run, range(study.realisations), threads))
