@@ -110,18 +110,20 @@ def explain(path: File, realisation: int | None = 0, **levels: float | str) -> E
             f"{path}: got a line that is a measured profile, need lines drawn from a spectrum: "
             "its heights are in roughness.nc alone"
         )
+    pair = _pair(run)
     if kind == "areal":
         inputs = {"film": film.isel(film_formula=slice(contact.sizes["film_formula"]))}
-        if Gap(run["film_shape"], run["roughness_deformation"]).is_answered:
+        if pair.gap.is_answered:
             inputs["surface_response"] = _input_of(contact, path, "surface_response")
-        again = _surfaces_again(stored, with_surface_responses(inputs), run)
+        film, slips = with_surface_responses(inputs), run["slide_to_roll_ratio"]
+        again = _surfaces_again(stored, film, pair, slips)
         return Explanation(kind, stored, properties, point, values, again)
     if realisation is not None:
         if realisation not in stored["realisation"]:
             first, last = stored["realisation"].values[[0, -1]]
             raise DataError(f"{path}: realisation: got {realisation}, need {first} to {last}")
         stored = stored.sel(realisation=[realisation])
-    again = _lines_again(stored, point, run)
+    again = _lines_again(stored, point, pair, run["revolutions"])
     if realisation is None:
         again = with_intervals(again, point)
     return Explanation(kind, stored, properties, point, values, again)
@@ -163,35 +165,31 @@ def _level(coordinate, path, wanted):
     return index
 
 
-def _model(run):
-    """Roughness, boundary layer, seed and gap of a study's values."""
+def _pair(run):
+    """Rough rollers of a study's values."""
     layer = BoundaryLayer.model_construct(**run["boundary_layer"])
     gap = Gap(run["film_shape"], run["roughness_deformation"])
-    return LineSpec(**run["lines"]), layer, run["seed"], gap
+    return RoughPair(LineSpec(**run["lines"]), run["rollers"]["length"], layer, run["seed"], gap)
 
 
-def _surfaces_again(stored, film, run):
+def _surfaces_again(stored, film, pair, slips):
     """Draw the surfaces again and sample their contact at one operating point.
 
     The grid of the surfaces depends on the films of all points.
     """
-    spec, layer, seed, gap = _model(run)
     wanted = xr.ones_like(film["film_thickness"], bool)
     for name in wanted.dims:
         wanted = wanted & (film[name] == stored[name].values)
-    slips = run["slide_to_roll_ratio"]
-    pair = RoughPair(spec, run["length"], layer, seed, gap)
     return _at(stored, contact_of_surfaces(pair, film, slips, wanted=wanted.drop_attrs()))
 
 
-def _lines_again(stored, film, run):
+def _lines_again(stored, film, pair, revolutions):
     """Draw the roughness again and run the contact model on it; use only the levels of `stored`."""
-    spec, layer, seed, gap = _model(run)
     ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
     numbers = stored["realisation"].values.tolist()
     for first in range(0, len(numbers), 8):  # a few at a time, for the memory that lines take
-        lines = roughness_batch(spec, seed, numbers[first : first + 8])
-        parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"], gap))
+        lines = roughness_batch(pair.spec, pair.seed, numbers[first : first + 8])
+        parts.append(contact_statistics(lines, film, pair.layer, ratios, revolutions, pair.gap))
     options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
     return xr.concat(parts, "realisation", **options)
 

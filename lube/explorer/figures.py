@@ -4,18 +4,7 @@ import math
 
 import numpy as np
 import xarray as xr
-from bokeh.models import (
-    ColorBar,
-    ColumnDataSource,
-    FixedTicker,
-    HoverTool,
-    LinearColorMapper,
-    LogAxis,
-    LogColorMapper,
-    Range1d,
-    TapTool,
-    Whisker,
-)
+from bokeh import models
 from bokeh.palettes import Cividis256
 from bokeh.plotting import figure
 
@@ -54,7 +43,7 @@ where asperities of the surfaces carry much of the load."""
 
 
 def draw(
-    content: dict, datasets: dict[str, xr.Dataset], sources: dict[str, ColumnDataSource]
+    content: dict, datasets: dict[str, xr.Dataset], sources: dict[str, models.ColumnDataSource]
 ) -> dict[str, figure]:
     """Draw the page's figures, as yet without an operating point.
 
@@ -76,7 +65,7 @@ def draw(
     shares = _share_range(datasets)
     films = _spread(1e6 * datasets["film"]["film_thickness"].values)
     resistances = _spread(_values(datasets, "contact_resistance", "trace", "surface_trace"), 1.5)
-    across = Range1d()
+    across = models.Range1d()
     figures = {
         "film": _film_along(sources, across, films),
         "probability": _probability_along(sources, across, shares),
@@ -118,13 +107,13 @@ def _plot(x_axis_label, y_axis_label, **options):
     options |= {"tools": "", "toolbar_location": None}
     plot = figure(x_axis_label=x_axis_label, y_axis_label=y_axis_label, **options)
     for axis, span in ((plot.xaxis, plot.x_range), (plot.yaxis, plot.y_range)):
-        if isinstance(axis[0], LogAxis):
+        if isinstance(axis[0], models.LogAxis):
             _label(axis, _round_numbers(span.start, span.end), "{:g}".format)
     return plot
 
 
 def _label(axis, ticks, text):
-    axis.ticker = FixedTicker(ticks=ticks)
+    axis.ticker = models.FixedTicker(ticks=ticks)
     axis.major_label_overrides = {tick: text(tick) for tick in ticks}
 
 
@@ -166,8 +155,8 @@ def _all_points(plot, sources, x, y, around="grid"):
     look = {"fill_color": COLOURS["vermilion"], "line_color": "black"}
     _points(plot, sources["chosen"], x, y, size=15, **look)
     plot.add_tools(
-        HoverTool(renderers=[small], tooltips="<b>@name</b>", point_policy="snap_to_data"),
-        TapTool(renderers=[small]),
+        models.HoverTool(renderers=[small], tooltips="<b>@name</b>", point_policy="snap_to_data"),
+        models.TapTool(renderers=[small]),
     )
 
 
@@ -182,7 +171,7 @@ def _probabilities(plot, sources, x, around):
     _points(plot, sources[around], x, "rubbing", marker="diamond", **around_it | {"size": 26})
     look = {"marker": "inverted_triangle", "fill_color": "white"}
     limits = _points(plot, sources[around], x, "limit", **look)
-    for tool in (HoverTool, TapTool):
+    for tool in (models.HoverTool, models.TapTool):
         plot.select_one(tool).renderers.append(limits)
     look |= {"line_color": COLOURS["vermilion"], "line_width": 2.5}
     _points(plot, sources["chosen"], x, "limit", size=15, **look)
@@ -190,12 +179,12 @@ def _probabilities(plot, sources, x, around):
         x, "share", source=sources["records"], marker="x", size=10,
         line_color=COLOURS["purple"], line_width=2.5,
     )  # fmt: skip
-    plot.add_tools(HoverTool(renderers=[records], tooltips="<b>@name</b>"))
+    plot.add_tools(models.HoverTool(renderers=[records], tooltips="<b>@name</b>"))
 
 
 def _whiskers(plot, source, x, colour, width):
     look = {"line_color": colour, "line_width": width}
-    whisker = Whisker(base=x, lower="lower", upper="upper", source=source, **look)
+    whisker = models.Whisker(base=x, lower="lower", upper="upper", source=source, **look)
     whisker.upper_head.size = whisker.lower_head.size = 8
     whisker.upper_head.line_color = whisker.lower_head.line_color = colour
     plot.add_layout(whisker)
@@ -232,7 +221,7 @@ def _regime_map(film, validity, sources):
     )  # fmt: skip
     plot.image(
         [flags.astype(np.uint8)], x=left, y=bottom, dw=right - left, dh=top - bottom,
-        color_mapper=LinearColorMapper(palette=TINTS, low=0, high=3), level="image",
+        color_mapper=models.LinearColorMapper(palette=TINTS, low=0, high=3), level="image",
     )  # fmt: skip
     plot.quad(
         source=sources["frame"], left="left", right="right", bottom="bottom", top="top",
@@ -268,7 +257,9 @@ def _master_map(master, span, sources):
     lines = _edges(widths)
     mean = np.array(master["mean"], dtype=float).ravel()
     rows, columns = np.divmod(np.arange(mean.size), ratios.size)
-    mapper = LogColorMapper(palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white")
+    mapper = models.LogColorMapper(
+        palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white"
+    )
     plot = _plot(
         "Lambda ratio", "Contact width (µm)",
         x_axis_type="log", x_range=span, y_range=(lines[0], lines[-1]),
@@ -286,7 +277,7 @@ def _master_map(master, span, sources):
         fill_color={"field": "mean", "transform": mapper},
         line_color={"field": "mean", "transform": mapper},  # without outlines, gaps would show
     )  # fmt: skip
-    bar = ColorBar(color_mapper=mapper, width=12, padding=4)
+    bar = models.ColorBar(color_mapper=mapper, width=12, padding=4)
     _label(bar, list(_SHARES), _percent)
     plot.add_layout(bar, "right")
     _all_points(plot, sources, "lambda", "width")
@@ -302,8 +293,8 @@ def _edges(values):
 def _trace(part, source, resistances):
     """Draw contact length and resistance of a trace, or of its part around the peak."""
     time = "Time (s)" if part == "whole" else "Time from the peak (ms)"
-    common = {"height": 230, "x_range": Range1d(), "min_border_left": 75}
-    length = _plot(time, "Contact length (µm)", y_range=Range1d(), **common)
+    common = {"height": 230, "x_range": models.Range1d(), "min_border_left": 75}
+    length = _plot(time, "Contact length (µm)", y_range=models.Range1d(), **common)
     length.line("time", "length", source=source, line_color=COLOURS["blue"])
     resistance = _plot(time, "Resistance (Ω)", y_axis_type="log", y_range=resistances, **common)
     green = COLOURS["green"]

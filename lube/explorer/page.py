@@ -8,15 +8,8 @@ import json
 from pathlib import Path
 
 import xarray as xr
+from bokeh import models
 from bokeh.document import Document
-from bokeh.models import (
-    CategoricalSlider,
-    ColumnDataSource,
-    CustomJS,
-    InlineStyleSheet,
-    RadioButtonGroup,
-    Select,
-)
 from bokeh.resources import Resources
 from bokeh.themes import Theme
 
@@ -62,12 +55,12 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
     start = content["traces"][0]["at"]
     controls = _controls(content["levels"], start)
     sources = {
-        name: ColumnDataSource({column: [] for column in columns}, name=name)
+        name: models.ColumnDataSource({column: [] for column in columns}, name=name)
         for name, columns in COLUMNS.items()
     }
     figures = draw(content, datasets, sources)
     arguments = {"controls": controls, "sources": sources, "figures": figures}
-    react = CustomJS.from_file(_TEMPLATES / "explorer.mjs", **arguments)
+    react = models.CustomJS.from_file(_TEMPLATES / "explorer.mjs", **arguments)
     for name, control in controls.items():
         control.js_on_change("active" if name == "along" else "value", react)
     for name in ("along", "grid", "force"):
@@ -104,21 +97,22 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
 def _controls(levels, start):
     """Make a control for each choice with several levels, and one for the abscissa."""
     controls = {}
-    sheets = [InlineStyleSheet(css=(_TEMPLATES / "controls.css").read_text(encoding="utf-8"))]
-    common = {"stylesheets": sheets, "sizing_mode": "stretch_width", "margin": (4, 0, 8, 0)}
+    css = (_TEMPLATES / "controls.css").read_text(encoding="utf-8")
+    sheet = models.InlineStyleSheet(css=css)
+    common = {"stylesheets": [sheet], "sizing_mode": "stretch_width", "margin": (4, 0, 8, 0)}
     for name, level in levels.items():
         names = level["names"]
         if len(names) == 1:
             continue
         options = {"title": _NAMES[name], "value": names[start[name]], **common}
         if name in ("lubricant", "film_formula", MODEL):
-            controls[name] = Select(options=names, **options)
+            controls[name] = models.Select(options=names, **options)
         else:
-            controls[name] = CategoricalSlider(categories=names, **options)
+            controls[name] = models.CategoricalSlider(categories=names, **options)
     several = [name for name in CHOICES[2:] if name in controls]
     if several:
         first = several.index("temperature") if "temperature" in several else 0
-        controls["along"] = RadioButtonGroup(
+        controls["along"] = models.RadioButtonGroup(
             labels=[_NAMES[name] for name in several], active=first, tags=several, **common
         )
     return controls

@@ -35,19 +35,14 @@ def tables(found: xr.Dataset) -> str:
     models = by_contact_model(found)
     several, parts = models.sizes["contact_model"] > 1, []
     for model in models["contact_model"].values:
+        points = models.sel(contact_model=model).isel(lubricant=0).stack(point=POINT_DIMS[1:])
+        once = points.sel(turns=1.0, method="nearest")
         parts += [f"**By contact of the {model}**"] if several else []
-        parts += _of_model(models.sel(contact_model=model))
+        parts += [_records(once.sel(quantity=name), name) for name in found["quantity"].values]
+        parts.append(_durations(points))
     if "narrowing" in found:
         parts.append(_others(found.isel(lubricant=0).stack(point=POINT_DIMS[1:])))
     return "\n\n".join(parts)
-
-
-def _of_model(found):
-    """Tabulate the best records of each quantity, and durations, by one contact model."""
-    points = found.isel(lubricant=0).stack(point=POINT_DIMS[1:])
-    once = points.sel(turns=1.0, method="nearest")
-    parts = [_records(once.sel(quantity=name), name) for name in found["quantity"].values]
-    return [*parts, _durations(points)]
 
 
 def _records(of_quantity, name):

@@ -8,14 +8,7 @@ from importlib.metadata import version
 import numpy as np
 import xarray as xr
 
-from lube.grid.model_limits import (
-    LARGEST_DEFORMATION,
-    LARGEST_SHARE,
-    deformed,
-    merged,
-    overloaded,
-    rubbing,
-)
+from lube.grid import model_limits
 from lube.grid.operating_points import by_contact_model
 from lube.report.pages import render
 from lube.schema import LIMITS, MEAN_LIMITS, values_with_limits
@@ -238,7 +231,8 @@ def _of_surfaces(study, results):
 
 def _deformed(model, film, results, first):
     """Count the points where the oil changes the roughness by too large a part of the film."""
-    return int(deformed(film.sel(first), results["tail"] if model == "surface" else None).sum())
+    surfaces = results["tail"] if model == "surface" else None
+    return int(model_limits.deformed(film.sel(first), surfaces).sum())
 
 
 def _held(film, contact, first):
@@ -249,14 +243,14 @@ def _held(film, contact, first):
         contact = contact.sel(first)
         found = {
             "share": contact["contact_load_share"].mean("realisation").max().item(),
-            "overloaded": int(overloaded(contact).sum()),
-            "merged": int(merged(contact, film).sum()),
+            "overloaded": int(model_limits.overloaded(contact).sum()),
+            "merged": int(model_limits.merged(contact, film).sum()),
         }
     return found | {
-        "small": LARGEST_DEFORMATION,
+        "small": model_limits.LARGEST_DEFORMATION,
         "surface_share": None if share is None else share.max().item(),
-        "rubbing": int(rubbing(film).sum()),
-        "little": LARGEST_SHARE,
+        "rubbing": int(model_limits.rubbing(film).sum()),
+        "little": model_limits.LARGEST_SHARE,
     }
 
 

@@ -202,8 +202,6 @@ class Predictor:
         formulas = self.deviating.formulas
         number = numbers.get("film_formula", np.zeros(film.sizes["run"], int))
         is_computed = np.flatnonzero(np.array(formulas)[number] == COMPUTED)
-        if is_computed.size == 0:
-            return film
         some = film.isel(run=is_computed)
         variables = np.log([some[name].values.ravel() for name in FILM_GROUPS])
         ratio = np.exp(self.film(variables)[:, 0])

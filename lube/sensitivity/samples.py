@@ -7,7 +7,7 @@ import scipy.special
 import xarray as xr
 from scipy.stats import qmc
 
-from lube.study.uncertainty import FARTHEST, Factor
+from lube.study.uncertainty import CHOICES, FARTHEST, Factor
 from lube.types import Array
 
 SEED = "seed"
@@ -69,7 +69,7 @@ def over_run(values: dict[str, Array]) -> dict[str, xr.DataArray]:
 
 def _at(factor, unit):
     given = factor.given
-    if factor.is_choice:
+    if factor.name in CHOICES:
         return np.minimum((unit * len(given.choices)).astype(int), len(given.choices) - 1)
     lower, upper = given.range
     if given.distribution == "uniform":

@@ -78,15 +78,10 @@ def contact_of_surfaces(
         some = film.isel(film_formula=formulas)
         if not some.sizes["film_formula"]:
             continue
-        contact = surface_contact(
-            pair,
-            some,
-            threads,
-            fewer=fewer,
-            slide_to_roll_ratio=levels,
-            wanted=None if wanted is None else wanted.isel(film_formula=formulas),
-        )
-        found.append(contact)
+        choices = {"fewer": fewer, "slide_to_roll_ratio": levels}
+        if wanted is not None:
+            choices["wanted"] = wanted.isel(film_formula=formulas)
+        found.append(surface_contact(pair, some, threads, **choices))
     found = xr.concat(found, "film_formula", join="exact")
     # If the film is the same at all slips, so is the probability.
     found = xr.broadcast(found.drop_attrs())[0]

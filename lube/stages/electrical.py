@@ -115,28 +115,26 @@ def _readings(study, film, rigs, slip, threads):
     once = study.model_copy(update={"rig": one_turn})
     points = operating_points(film, slip)
     known = np.flatnonzero(known_films(points, study.gap))
-    ways = len(READINGS) + len(study.experiment.thresholds)
-    shares = np.full((points.sizes["operating_point"], 2 + len(rigs) * ways), np.nan)
+    sizes = [film.sizes[name] for name in POINT_DIMS]
+    length, share = np.full((2, *sizes), np.nan)
+    read = np.full((len(rigs), len(READINGS), *sizes), np.nan)
+    by_threshold = np.full((len(rigs), len(study.experiment.thresholds), *sizes), np.nan)
     some = points.isel(operating_point=known)
     for _, number, revolution in simulated_revolutions(once, some, threads):
-        contact = revolution.contact
-        found = [contact.mean() * study.line_spec.spacing, np.count_nonzero(contact) / contact.size]
-        for rig in rigs.values():
-            for read in read_shares(revolution.voltage(rig), study.experiment, rig):
-                found += [*read]
-        shares[known[number]] = found
-    sizes = [film.sizes[name] for name in POINT_DIMS]
-    read = shares[:, 2:].T.reshape(len(rigs), ways, *sizes)
-    read, by_threshold = np.split(read, [len(READINGS)], axis=1)
-    length = xr.DataArray(shares[:, 0].reshape(sizes), dims=POINT_DIMS)
+        contact, at = revolution.contact, np.unravel_index(known[number], sizes)
+        length[at] = contact.mean() * study.line_spec.spacing
+        share[at] = np.count_nonzero(contact) / contact.size
+        for row, rig in enumerate(rigs.values()):
+            shares = read_shares(revolution.voltage(rig), study.experiment, rig)
+            read[(row, ..., *at)], by_threshold[(row, ..., *at)] = shares
     found = xr.Dataset(
         {
-            "true_contact_share": (POINT_DIMS, shares[:, 1].reshape(sizes)),
+            "true_contact_share": (POINT_DIMS, share),
             "read_contact_share": (("rig", "reading", *POINT_DIMS), read),
             "threshold_contact_share": (("rig", "threshold", *POINT_DIMS), by_threshold),
         }
     )
-    return found, length
+    return found, xr.DataArray(length, dims=POINT_DIMS)
 
 
 def _discharges(study, film, rigs, threads):

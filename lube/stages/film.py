@@ -16,16 +16,9 @@ from lube.types import Datasets
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film.nc``; see `lube.stages`."""
-    grid = study.operating_grid
-    return film_table(
-        inputs["lubricant"],
-        study.rough_rollers,
-        grid.force,
-        grid.speed,
-        study.film_formulas,
-        slide_to_roll_ratio=study.slips,
-        **study.film_model,
-    )
+    oil, rollers, grid = inputs["lubricant"], study.rough_rollers, study.operating_grid
+    levels = grid.force, grid.speed, study.film_formulas
+    return film_table(oil, rollers, *levels, slide_to_roll_ratio=study.slips, **study.film_model)
 
 
 def film_table(

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.ensemble import PROBABILITIES, with_limits
-from lube.contact.windows import ContactWindows
+from lube.contact.windows import study_windows
 from lube.grid.operating_points import at_slip
 from lube.kernels.synthesis import mean_powers
 from lube.schema import label
@@ -49,7 +49,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     half_width = point["contact_half_width"].item()
     films = LAMBDA_RATIOS * film["composite_rms_roughness"].item()
     points = point.drop_vars("lambda_ratio").assign(film_thickness=("lambda_ratio", films))
-    windows = ContactWindows(spec, points, study.boundary_layer, study.gap)
+    windows = study_windows(study, points)
 
     def on_lines(level):
         heights = dict(zip(("skewness", "kurtosis"), level, strict=True))

@@ -10,12 +10,10 @@ import logging
 import numpy as np
 import xarray as xr
 
-from lube.errors import StudyError
 from lube.schema import label, with_dims
 from lube.study.line_spec import LineSpec
 from lube.study.study import Study
 from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
-from lube.surfaces.rare_contact import check_stands_for_surface
 from lube.surfaces.rough_surface import rough_surface
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLER_NUMBERS, draw_realisation
@@ -44,7 +42,7 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
     Parameters
     ----------
     spec : LineSpec
-        Parameters of the lines; `Study.line_spec` of a study.
+        Parameters of the lines, which stand for isotropic surfaces; `Study.line_spec` of a study.
     reduced_modulus : float
         Reduced modulus, Pa.
     seed : int
@@ -59,16 +57,10 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
     ------
     LubeError
         If tamaas is not installed.
-    StudyError
-        If the heights of a line are not Gaussian, a line was measured along rolling, or a surface
-        has a lay.
     DataError
         If the band of wavelengths is too wide for a surface, or tamaas finds no solution.
     """
     find_tamaas()
-    check_stands_for_surface(spec)
-    if not spec.is_isotropic:
-        raise StudyError("roughness.lay_ratio: got a lay, need none: squares have no direction")
     smallest = 4.0 * spec.longest_wavelength / LEAST_POINTS
     surface = rough_surface(spec, contact=(smallest, smallest), waves=1)
     lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]

@@ -12,6 +12,7 @@ from lube.sensitivity.predictor import BAND, Predictor
 from lube.sensitivity.runs import SEEDS
 from lube.sensitivity.samples import SEED
 from lube.study.study import Study
+from lube.study.uncertainty import CHOICES
 from lube.types import Datasets
 
 
@@ -33,7 +34,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         sampled = names, predictor.log_probability, study.seed
         single, values = sobol(*sampled)
         grouped, _ = sobol(*sampled, of_factor)
-        choices = {one.name: len(one.given.choices) for one in factors if one.is_choice}
+        choices = {one.name: len(one.given.choices) for one in factors if one.name in CHOICES}
         choices[SEED] = SEEDS
         screened = morris(*sampled, choices)
     table = _limits(single, "factor") | _limits(grouped, "factor_group", "group_")

@@ -4,6 +4,7 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.contact.ensemble import PROBABILITIES
 from lube.contact.rough_pair import RoughPair
 from lube.contact.windows import FLATTENED, ContactWindows, study_windows
 from lube.errors import StudyError
@@ -26,7 +27,6 @@ FEWER_PAIRS = 8
 """The first of these pairs, used for the other film formulas."""
 _SLIP = "slide_to_roll_ratio"
 _ASYMPTOTES = "geometric_contact_asymptote", "breakthrough_asymptote"
-_PROBABILITIES = "breakthrough_probability", "geometric_contact_probability"
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -118,7 +118,7 @@ def _by_model(study, film, lines, areal):
 def _on_surfaces(study, speed, areal):
     """Variables of surfaces."""
     perimeter = study.line_spec.points[0] * study.line_spec.spacing
-    table = {f"{name}{end}": areal[f"{name}{end}"] for name in _PROBABILITIES for end in LIMITS}
+    table = {f"{name}{end}": areal[f"{name}{end}"] for name in PROBABILITIES for end in LIMITS}
     table |= surface_rates(areal, speed)
     turn = perimeter / surface_speeds(speed, areal[_SLIP])[0]
     table["breakthroughs_per_revolution"] = table["breakthrough_rate"] * turn
@@ -206,7 +206,7 @@ def pair_probabilities(
     spec, gap = pair.spec, pair.gap
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
-        names = *_PROBABILITIES, "breakthrough_rate"
+        names = *PROBABILITIES, "breakthrough_rate"
         return xr.Dataset(dict.fromkeys(names, unknown), attrs={"remarks": remark})
     windows = ContactWindows(spec, film, pair.layer, gap)
     table, runs = _sampled(spec, film, windows, slide_to_roll_ratio, pair.seed, PAIRS)
@@ -234,7 +234,7 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
         limits = mean_interval(of_pairs.values, most)
         limited |= values_with_limits(name, [of_pairs[0].copy(data=limit) for limit in limits])
     limits = xr.Dataset(limited, attrs=values.attrs)
-    breakthrough, contact = (limits[f"{name}_upper"] for name in _PROBABILITIES)
+    breakthrough, contact = (limits[f"{name}_upper"] for name in PROBABILITIES)
     most = breakthrough_limit(breakthrough, contact, WINDOWS * values.sizes["pair"])
     return limits.assign(breakthrough_probability_upper=breakthrough.copy(data=most))
 
@@ -348,7 +348,7 @@ def _sampled(spec, film, windows, slips, seed, pairs, threads=None):
         for each in zip(*found, strict=True)
     )
     contact, breakthrough = windows.transpose("outcome", ...)
-    return xr.Dataset(dict(zip(_PROBABILITIES, (breakthrough, contact), strict=True))), runs
+    return xr.Dataset(dict(zip(PROBABILITIES, (breakthrough, contact), strict=True))), runs
 
 
 def _touching_pairs(groups, of_pairs, windows):

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from lube.contact.rough_pair import RoughPair
+from lube.contact.ensemble import PROBABILITIES
+from lube.contact.rough_pair import RoughPair, drawn
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.ehl.response import at_wavelengths
@@ -22,15 +23,9 @@ from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
 from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
-from lube.statistics.confidence import (
-    breakthrough_limit,
-    mean_interval,
-    probability_interval,
-    ratio_interval,
-)
+from lube.statistics import confidence
 from lube.study.study import Study
 from lube.surfaces.rare_contact import WINDOWS
-from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 from lube.types import Datasets
 
@@ -199,8 +194,8 @@ def _sampled(variants, windows, study, threads):
     """Probabilities by importance sampling."""
     pairs = study.line_spec, study.seed, PAIRS, threads
     values = np.stack([windows[each].on_pairs(*pairs) for each in variants], axis=1)
-    mean, lower, upper = mean_interval(values, 1.0)
-    upper[:, 1] = breakthrough_limit(upper[:, 1], upper[:, 0], WINDOWS * PAIRS)
+    mean, lower, upper = confidence.mean_interval(values, 1.0)
+    upper[:, 1] = confidence.breakthrough_limit(upper[:, 1], upper[:, 0], WINDOWS * PAIRS)
     return _with_limits(variants, values, (mean, lower, upper))
 
 
@@ -208,28 +203,28 @@ def _counted(variants, windows, study, threads):
     """Probabilities counted on the study's realisations."""
 
     def run(number):
-        pair = draw_realisation(study.line_spec, study.seed, number)
+        pair = drawn(study, number)
         return [_count(each, windows[each], pair) for each in variants]
 
     values = np.array(on_threads(run, range(study.realisations), threads))
     widths = (2 * windows[variants[0]].half_windows + 1) * study.line_spec.spacing
     independent = study.line_spec.independent_windows(widths)
-    return _with_limits(variants, values, probability_interval(values, independent))
+    return _with_limits(variants, values, confidence.probability_interval(values, independent))
 
 
 def _on_surface(variant, film, own, study, threads):
     """Probabilities on surfaces, and their ratios to the study's own, which are independent."""
-    names = "breakthrough_probability", "geometric_contact_probability"
     unknown = np.full(film["film_thickness"].size, np.nan)
-    found = {f"{name}{end}": unknown for name in names for end in LIMITS}
+    found = {f"{name}{end}": unknown for name in PROBABILITIES for end in LIMITS}
     if study.has("surface_response") and variant.gap.is_on_surfaces:
         pair = replace(RoughPair.of(study), gap=variant.gap)
         contact = surface_contact(pair, film, threads)
         found = {name: contact[name].transpose(*POINT_DIMS).values.ravel() for name in found}
+    name = "breakthrough_probability"
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = found[names[0]] / own[names[0]]
+        ratio = found[name] / own[name]
         half_widths = [
-            (each[f"{names[0]}_upper"] - each[f"{names[0]}_lower"]) / (2.0 * each[names[0]])
+            (each[f"{name}_upper"] - each[f"{name}_lower"]) / (2.0 * each[name])
             for each in (found, own)
         ]
         error = np.hypot(*half_widths)
@@ -247,7 +242,7 @@ def _count(variant, windows, pair):
 def _with_limits(variants, values, means):
     """Probabilities of each variant, and their ratios to those of the first on the same lines."""
     contact, breakthrough = np.moveaxis(np.array(means), 2, 0)
-    ratio = np.array(ratio_interval(values[:, :, 1], values[:, :1, 1]))
+    ratio = np.array(confidence.ratio_interval(values[:, :, 1], values[:, :1, 1]))
     return {
         each: values_with_limits("geometric_contact_probability", contact[:, at])
         | values_with_limits("breakthrough_probability", breakthrough[:, at])

@@ -21,8 +21,8 @@ def mean_over_first(values: Array) -> Array:
     """Mean over the first axis, with the terms added one after the other.
 
     NumPy's own sum pairs the terms by the array's shape and memory layout, so the last digit of
-    one column depends on the other columns. Here it does not, and one operating point computed by
-    itself is bit-identical to the same point computed among others.
+    one column depends on the other columns. With Python's it does not, and one operating point
+    computed by itself is bit-identical to the same point computed among others.
 
     Parameters
     ----------
@@ -39,10 +39,7 @@ def mean_over_first(values: Array) -> Array:
     >>> mean_over_first(np.array([[1.0, 2.0], [3.0, 6.0]]))
     array([2., 4.])
     """
-    total = np.zeros(values.shape[1:])
-    for row in values:
-        total = total + row
-    return total / len(values)
+    return sum(values) / len(values)
 
 
 def mean_or_nan(values: Array) -> float:

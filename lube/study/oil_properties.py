@@ -12,13 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from lube.errors import RangeError, located
-from lube.physics import ZERO_CELSIUS
-from lube.physics.coolprop_fluids import (
-    initial_pressure_viscosity,
-    liquid_property,
-    liquid_range,
-    secant_pressure_viscosity,
-)
+from lube.physics import ZERO_CELSIUS, coolprop_fluids
 from lube.physics.pressure_viscosity import (
     fit_mcewen,
     gold_pressure_viscosity,
@@ -113,23 +107,23 @@ class _CoolPropFluid:
         lowest, highest = record.valid_temperatures
         self.data_temperature = np.linspace(lowest, highest, _SAMPLES) + ZERO_CELSIUS
         self.data_viscosity = self.kinematic_viscosity(self.data_temperature)
-        self.temperature_limits = liquid_range(self._fluid)
+        self.temperature_limits = coolprop_fluids.liquid_range(self._fluid)
 
     def density(self, temperature):
-        return liquid_property(self._fluid, "density", temperature)
+        return coolprop_fluids.liquid_property(self._fluid, "density", temperature)
 
     def kinematic_viscosity(self, temperature):
-        dynamic = liquid_property(self._fluid, "viscosity", temperature)
+        dynamic = coolprop_fluids.liquid_property(self._fluid, "viscosity", temperature)
         return dynamic / self.density(temperature)
 
     def stated_coefficient(self, temperature):
         if self._pressure_viscosity.definition == "secant":
             pressure = self._pressure_viscosity.pressure
-            return secant_pressure_viscosity(self._fluid, temperature, pressure)
-        return initial_pressure_viscosity(self._fluid, temperature)
+            return coolprop_fluids.secant_pressure_viscosity(self._fluid, temperature, pressure)
+        return coolprop_fluids.initial_pressure_viscosity(self._fluid, temperature)
 
     def thermal_conductivity(self, temperature):
-        return liquid_property(self._fluid, "conductivity", temperature)
+        return coolprop_fluids.liquid_property(self._fluid, "conductivity", temperature)
 
 
 def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLike) -> xr.Dataset:

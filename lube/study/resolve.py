@@ -153,15 +153,13 @@ def _on_top(base, changes, where):
 
 def _without_replaced(below, above):
     """Remove the rollers' roughness from the base where the changes give a roughness."""
-    given = {}
+    kept = dict(below)
     for name in ROLLERS:
         roller = above.get(name)
-        given[name] = isinstance(roller, dict) and any(map(roller.get, ROUGHNESS_KEYS))
-    kept = dict(below)
-    if any(given.values()):
-        kept.pop(_OF_BOTH, None)
-    for name in ROLLERS:
-        if (given[name] or above.get(_OF_BOTH)) and isinstance(below.get(name), dict):
+        is_given = isinstance(roller, dict) and any(map(roller.get, ROUGHNESS_KEYS))
+        if is_given:
+            kept.pop(_OF_BOTH, None)
+        if (is_given or above.get(_OF_BOTH)) and isinstance(below.get(name), dict):
             others = below[name].items()
             kept[name] = {key: value for key, value in others if key not in ROUGHNESS_KEYS}
     return kept

@@ -207,11 +207,6 @@ class Factor:
     group: str
     given: _Uncertain | Choice
 
-    @property
-    def is_choice(self) -> bool:
-        """Whether it is a choice of the model."""
-        return isinstance(self.given, Choice)
-
 
 def spoken(name: str) -> str:
     """Write the name of a factor as in a text.

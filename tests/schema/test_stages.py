@@ -10,9 +10,9 @@ from unlike_studies import STUDIES, write_study
 from lube.errors import LubeError
 from lube.schema import DATASETS, FILES, ON_REQUEST, STAGES, SUMMARIES, forerunners
 from lube.stages import maker
-from lube.stages.patch import patch_contact
 from lube.study.study import load_study
 from lube.study.surface_checks import check_surfaces
+from lube.surfaces.rare_contact import check_stands_for_surface
 
 
 def test_every_kept_file_of_the_schema_has_its_row():
@@ -63,7 +63,8 @@ def test_what_the_registry_promises_is_what_the_stages_can_make(name, tmp_path):
     on_surface = study.has("areal") and study.has("gauge") and study.gap.is_plain
     on_surface &= not study.has("surface_records")  # gauge.nc then has films by surfaces
     assert study.has("areal_gauge") == on_surface
-    assert study.has("patch") == (not refuses(patch_contact, study.line_spec, None, None))
+    for_surface = not refuses(check_stands_for_surface, study.line_spec)
+    assert study.has("patch") == (for_surface and study.line_spec.is_isotropic)
     assert study.has("surface") == bool(study.topographies)
     conducts, has_line = study.resistivity != "insulator", study.line_spec.follows_rolling
     assert study.has("rig") == (conducts and has_line)

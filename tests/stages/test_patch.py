@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from lube.errors import LubeError, StudyError
+from lube.errors import LubeError
 from lube.schema import check
 from lube.stages import patch
 from lube.stages.patch import patch_contact
@@ -58,11 +58,6 @@ def test_realisations_differ_and_the_seed_decides(pressed, spec, monkeypatch):
     monkeypatch.setattr(patch, "PRESSURES", (0.003, 0.03))
     again = patch_contact(spec, MODULUS, 1)
     assert again.equals(pressed.isel(realisation=[0]))
-
-
-def test_lines_that_are_not_gaussian_are_refused(make_spec):
-    with pytest.raises(StudyError, match="Gaussian"):
-        patch_contact(make_spec(50_000, kurtosis=5.0), MODULUS, 1)
 
 
 def test_without_tamaas_one_line_comes_before_any_work(spec, monkeypatch):
