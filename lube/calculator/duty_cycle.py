@@ -121,10 +121,10 @@ def duty(
         ``whole_surface_probability`` and ``whole_surface_rate``, with limits as wide as if the
         errors at all points were the same. Limits for one pair, as at each point, are
         ``whole_probability_pair_lower`` and ``_pair_upper``, and those that begin with
-        ``whole_surface_probability_pair``; contact is counted in alignments of pure rolling, and
-        they are for these. With `bands` also ``whole_assumed_probability_lower``
-        and ``_upper``, between which 90 % of the cycle's means over pairs lie. The attribute
-        ``remarks`` is as in `lube.contact_probability`.
+        ``whole_surface_probability_pair``. Contact of lines is counted in alignments of pure
+        rolling, and the first two are for these. With `bands` also
+        ``whole_assumed_probability_lower`` and ``_upper``, between which 90 % of the cycle's means
+        over pairs lie. The attribute ``remarks`` is as in `lube.contact_probability`.
 
     Raises
     ------

@@ -28,7 +28,11 @@ from lube.errors import StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.plausibility import remarks
-from lube.inference.surface_scatter import revolution_size, surface_prediction
+from lube.inference.surface_scatter import (
+    revolution_size,
+    surface_prediction,
+    surface_scatter,
+)
 from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.study.rollers import RollerPair
@@ -369,8 +373,8 @@ def contact_probability(
         asperities would carry; ``surface_pair_deviation``, the standard deviation of the share of
         one pair of rollers in a revolution of pure rolling, and
         ``surface_breakthrough_probability_pair_lower`` and ``_pair_upper``, between which this
-        share lies in 95 % of cases; ``surface_passage_width``, over which the rollers move
-        while a contact is in the strip; and, if the oil does not deform the roughness,
+        share lies in 95 % of cases, with the slip given; ``surface_passage_width``, over which the
+        rollers move while a contact is in the strip; and, if the oil does not deform the roughness,
         ``surface_expected_breakthroughs`` and ``surface_expected_contacts``. From numbers and
         passage: ``surface_breakthrough_rate``, per hour, with ``_lower`` and ``_upper``, and
         ``surface_breakthrough_duration``.
@@ -438,7 +442,12 @@ def of_surface(
     found = surface_contact(pair, table, slide_to_roll_ratio=slip)
     found = found.assign(surface_rates(found, table["entrainment_speed"]))
     share = [found[f"breakthrough_probability{end}"] for end in LIMITS]
-    of_pair = surface_prediction([each.values for each in share], revolution_size(pair.spec, found))
+    slips, ratio = xr.full_like(share[0], 1.0) * slip, np.ones(share[0].shape)
+    if slips.any():
+        of_turn = share[0].values.ravel(), slips.values.ravel(), np.ones(slips.size), 0.0
+        ratio = surface_scatter(pair, table, *of_turn).reshape(slips.shape)
+    size = revolution_size(pair.spec, found)
+    of_pair = surface_prediction([each.values for each in share], size, ratio)
     for end, limit in zip(LIMITS[1:], of_pair, strict=True):
         found[f"breakthrough_probability_pair{end}"] = share[0].copy(data=limit)
     return {f"surface_{name}": values for name, values in found.items()}

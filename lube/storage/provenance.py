@@ -98,10 +98,14 @@ def _stage(kind):
     return kind.removesuffix("_batch")
 
 
+_OF_RECORDS = "experiment", "comparison", "gauge", "areal_gauge", "record_bands"
+"""Stages whose files have values of the records."""
+
+
 def _source(study, stage):
     """CF attribute `source`: how the values were produced."""
     by = f"by lube {version('lube')}"
-    if study.experiment.manifest is None or stage not in ("experiment", "comparison", "gauge"):
+    if study.experiment.manifest is None or stage not in _OF_RECORDS:
         return f"simulation {by}"
     evaluated = f"records of a rig, evaluated {by}"
     return evaluated if stage == "experiment" else f"{evaluated}; simulation {by}"

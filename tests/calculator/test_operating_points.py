@@ -158,6 +158,16 @@ def test_one_pair_of_surfaces_differs_from_the_mean_as_its_deviation_says(roller
     assert "on the surface" in found[f"{name}_pair_upper"].attrs["long_name"]
 
 
+def test_one_pair_of_surfaces_with_slip_meets_in_more_alignments(rollers, oil):
+    """Its share lies nearer to the mean, but not where one surface is at rest."""
+    name, widths = "surface_breakthrough_probability_pair", []
+    for slip in (0.0, 0.5, 2.0):
+        choices = {"contact_model": "surface", "slide_to_roll_ratio": slip}
+        found = lube.contact_probability(rollers, oil, **POINT | {"speed": "200 rpm"}, **choices)
+        widths.append(found[f"{name}_upper"].item() - found[f"{name}_lower"].item())
+    assert widths[1] < 0.95 * widths[0] and widths[2] > 1.2 * widths[0]
+
+
 def test_surface_and_line_are_answered_together(rollers, oil):
     models = {"contact_model": ["line", "surface"], "realisations": 2}
     found = lube.contact_probability(rollers, oil, **POINT, **models)
