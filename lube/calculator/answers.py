@@ -31,7 +31,7 @@ def variable_of(name: str, formula: str) -> str:
     return f"{name}_{formula.replace('-', '_')}"
 
 
-_KINDS = ("film_profile", "lubricant", "trace", "film", "contact", "indicators")
+_KINDS = ("surface_trace", "film_profile", "lubricant", "trace", "film", "contact", "indicators")
 _ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
 _WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
 _WORDS |= {name: words for name, *words in _OF_NO_FILE.itertuples(index=False)}

@@ -12,16 +12,18 @@ from lube.calculator.arguments import (
     one_name,
     single,
 )
-from lube.calculator.operating_points import check_contact, film_model
+from lube.calculator.operating_points import check_contact, film_in_si, film_model
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.rough_pair import roughness_batch
+from lube.contact.surface_trace import surface_traces
 from lube.errors import RangeError
+from lube.physics.electrical import contact_resistance
 from lube.schema import OPERATING_DIMS, POINT_DIMS
 from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.stages.trace import contact_trace
 from lube.study.oil_properties import lubricant_table
-from lube.types import FilmShape, InletHeating, OneAmount, RoughnessDeformation
+from lube.types import ContactModel, FilmShape, InletHeating, OneAmount, RoughnessDeformation
 
 
 @with_parts
@@ -38,9 +40,10 @@ def trace(
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
     slide_to_roll_ratio: float = 0.0,
+    contact_model: ContactModel = "line",
     seed: int = SEED,
 ) -> Answer:
-    """Contact length and electrical resistance over one revolution.
+    """Contact length and electrical resistance over one revolution, or a stretch of surfaces.
 
     Parameters
     ----------
@@ -48,12 +51,17 @@ def trace(
         As in `film`, one value of each.
     film_shape, roughness_deformation, slide_to_roll_ratio, seed
         As in `contact_probability`; the trace is that of realisation 0.
+    contact_model : str, optional
+        ``"line"``, over one revolution; or ``"surface"``, over the length of the rollers, while
+        they move by a few of the longest waves. It takes some ten seconds.
 
     Returns
     -------
     Answer
         ``contact_length`` (um) and ``contact_resistance`` (ohm) over time (ms). The resistance
-        is infinite without contact.
+        is infinite without contact. For the surface the length is the sum of the diameters of all
+        contacts whose layer is broken; also the numbers ``contacts`` and ``breakthroughs``, and
+        ``contact_length_at`` over roller_position (um).
 
     Raises
     ------
@@ -69,8 +77,17 @@ def trace(
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     choices = Choices.of(
-        film_shape, roughness_deformation, "line", inlet_shear_heating, inlet_meniscus
+        film_shape,
+        roughness_deformation,
+        one_name("contact_model", contact_model),
+        inlet_shear_heating,
+        inlet_meniscus,
     )
+    if contact_model == "surface":
+        formula = one_name("film_formula", film_formula)
+        film = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
+        single(film["film_thickness"])
+        return _surface_trace(rollers, film, rollers.rough_pair(seed, choices.gap), slip)
     one = _one_point(rollers, oil, force, speed, temperature)
     check_contact(rollers, rollers.pair.contact_half_width(*one[2]), choices)
     model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}
@@ -81,6 +98,16 @@ def trace(
     found = contact_trace(lines, table, [point], layer, resistivity, choices.gap)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
     return described(found[names].isel(operating_point=0).drop_attrs())
+
+
+def _surface_trace(rollers, film, pair, slip):
+    """Trace of the surfaces under a film."""
+    found = surface_traces(pair, film.expand_dims("operating_point"), slip)
+    found = found.isel(operating_point=0).rename(step="time")
+    found = found.assign_coords(time=found["time"] / film["entrainment_speed"].item())
+    resistance = contact_resistance(found["contact_length"].values, rollers.resistivity)
+    found = found.assign(film[["film_thickness", "contact_half_width"]])
+    return described(found.assign(contact_resistance=("time", resistance)).drop_attrs())
 
 
 @with_parts

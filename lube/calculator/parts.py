@@ -52,7 +52,7 @@ _LENGTHS = ("longest_wavelength", "shortest_wavelength")
 _LAYER = ("critical_thickness", "shear_strength")
 _TAKEN_BY = {
     "bands": "only contact_probability, duty and the required_ functions take it",
-    "contact_model": "only contact_probability, duty, plan and the required_ functions take it",
+    "contact_model": "only contact_probability, duty, trace, plan and the required_ functions do",
     "load_sharing": "only contact_probability and duty take it: the oil carries the whole load",
     "slide_to_roll_ratio": "only film, indicators, contact_probability, trace and plan take it; "
     "duty: both speeds",

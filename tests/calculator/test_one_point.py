@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from made import made
 
 import lube
 from lube import LubeError
@@ -57,6 +58,21 @@ def test_a_trace_has_the_shape_and_deformation_of_the_probability(rollers, oil, 
     probability = counted["breakthrough_probability_mean"].item()
     # Under uneven films contact is counted at some of the time steps.
     assert np.mean(length.values > 0.0) == pytest.approx(probability, rel=0.1)
+
+
+def test_the_trace_of_surfaces_is_that_of_the_surface_trace_stage(rollers, oil, busy):
+    study = busy.study.model_copy(update={"seed": 5, "contact_model": ("surface",)})
+    levels = {"force": 400.0, "speed": 100.0, "temperature": 60.0, "slide_to_roll_ratio": 0.0}
+    point = study.traces[0].model_copy(update=levels | {"lubricant": None, "film_formula": None})
+    study = study.model_copy(update={"traces": (point,), "film_formulas": ("paper",)})
+    stage = made(study, ("lubricant", "film", "surface_trace"))["surface_trace"].squeeze()
+    choices = {"film_formula": "paper", "contact_model": "surface", "seed": 5}
+    found = lube.trace(rollers, oil, **POINT, **choices)
+    for name, factor in (("contacts", 1.0), ("contact_length", 1e6), ("contact_length_at", 1e6)):
+        np.testing.assert_allclose(found[name], factor * stage[name], rtol=1e-12)
+    np.testing.assert_array_equal(found["contact_resistance"], stage["contact_resistance"])
+    np.testing.assert_allclose(found["time"], 1e3 * stage["time"], rtol=1e-12)
+    assert found["contacts"].sum() > found["breakthroughs"].sum() > 0.0
 
 
 def test_the_trace_of_an_insulator_has_no_resistance(oil):
