@@ -31,6 +31,8 @@ SHORT = 10
 """Digits of a fingerprint where people read it."""
 REMEDY = "; delete it and run snakemake again"
 """End of a message about a result that does not belong to the study: what to do."""
+_OF_RECORDS = "experiment", "comparison", "gauge", "areal_gauge", "record_bands"
+"""Stages whose files have values of the records."""
 
 
 def global_attributes(study: "Study", kind: str, inputs: Files = ()) -> dict[str, Any]:
@@ -96,10 +98,6 @@ def descriptive_attributes(study: "Study", kind: str) -> dict[str, Any]:
 def _stage(kind):
     """Name of the stage of a kind of file, which may be a batch."""
     return kind.removesuffix("_batch")
-
-
-_OF_RECORDS = "experiment", "comparison", "gauge", "areal_gauge", "record_bands"
-"""Stages whose files have values of the records."""
 
 
 def _source(study, stage):

@@ -44,6 +44,15 @@ def test_every_file_states_the_studys_values_and_their_sha256(study):
         assert attributes["study_seed"] == study.seed
 
 
+def test_files_with_values_of_measured_records_say_so(study):
+    experiment = study.experiment.model_copy(update={"manifest": "records.csv"})
+    measured = study.model_copy(update={"experiment": experiment})
+    for kind in ("experiment", "comparison", "gauge", "areal_gauge", "record_bands"):
+        assert global_attributes(study, kind)["source"].startswith("simulation by lube")
+        assert global_attributes(measured, kind)["source"].startswith("records of a rig")
+    assert global_attributes(measured, "contact")["source"].startswith("simulation by lube")
+
+
 def test_the_title_of_an_oil_is_no_value_and_in_no_byte_of_the_lubricant_file(study, tmp_path):
     found = set()
     for title in ("Mobilgear SHC XMP 320", "My <oil>"):
