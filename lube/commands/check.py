@@ -114,7 +114,7 @@ def _expected_run(study, points):
         seconds += study.realisations * size * (0.3 + runs)
     if study.has_surfaces:
         each = 9.0 if study.gap.is_answered else 2.0
-        seconds += points * each * (4.0 if study.compares_surfaces else 1.0)
+        seconds += points * each * (6.0 if study.compares_surfaces else 1.0)
     if study.rig.has_surfaces:
         spec, length = study.line_spec, study.rollers.length
         spacing = min(line.shortest_wavelength for line in spec.lines) / 5.0
