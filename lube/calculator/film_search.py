@@ -117,7 +117,8 @@ class FilmSearch:
 
         ends = ratios[known[[0, -1]]]
         films = self.films(whole["contact_half_width"].item(), points_at, table_at, ends)
-        return films, _reached(films, whole["film_thickness"].values[known], levels[known], tried)
+        thickness, levels = whole["film_thickness"].values[known], levels[known]
+        return films, _reached(films, thickness, levels, tried, is_rising)
 
     def films(self, half_width, points_at, table_at=None, ends=(0.0, np.inf), own=None):
         """Find the films at which the probability, its lower and its upper limit equal the share.
@@ -279,13 +280,13 @@ def _crossing(ratios, probabilities, share):
     return np.sqrt(film) if film > 0.0 else 0.0
 
 
-def _reached(films, thickness, levels, tried):
+def _reached(films, thickness, levels, tried, is_rising):
     """Levels at which films have a thickness, of levels in the order of rising thickness.
 
     Beyond them a speed or viscosity is 0 or infinite, a temperature infinite of either sign.
     """
     # Films that rise with the level are those of a speed or viscosity, others of a temperature.
-    left, right = (0.0, np.inf) if levels[-1] > levels[0] else (np.inf, -np.inf)
+    left, right = (0.0, np.inf) if is_rising else (np.inf, -np.inf)
     with np.errstate(divide="ignore"):  # a lower limit may be 0
         sought, thickness = np.log(films["film_thickness"]), np.log(thickness)
     if sought[0] > thickness[-1]:

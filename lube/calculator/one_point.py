@@ -83,15 +83,14 @@ def trace(
         inlet_shear_heating,
         inlet_meniscus,
     )
-    if contact_model == "surface":
-        formula = one_name("film_formula", film_formula)
-        film = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
-        single(film["film_thickness"])
-        return _surface_trace(rollers, film, rollers.rough_pair(seed, choices.gap), slip)
+    formula = one_name("film_formula", film_formula)
     one = _one_point(rollers, oil, force, speed, temperature)
+    if contact_model == "surface":
+        film = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
+        return _surface_trace(rollers, film, rollers.rough_pair(seed, choices.gap), slip)
     check_contact(rollers, rollers.pair.contact_half_width(*one[2]), choices)
     model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}
-    table = film_table(*one, [one_name("film_formula", film_formula)], **model)
+    table = film_table(*one, [formula], **model)
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     lines = roughness_batch(rollers.lines, seed, [0])
     layer, resistivity = rollers.layer, rollers.resistivity
