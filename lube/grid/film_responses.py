@@ -71,8 +71,9 @@ def wave_responses(
     are solved for from the longest to the shortest, until the oil changes one by less than
     `UNCHANGED` anywhere. The response to shorter waves is 1; in `rms_deformation` they count as
     changed as much as the shortest one that was solved for. The error of interpolation is a root
-    mean square over the contact. It is found at the two wavelengths midway between the stored one
-    at which the response is most curved and its neighbours; the larger of the two is stored.
+    mean square over the contact. It is found at two wavelengths for each surface speed, midway
+    between the stored one at which the response in the contact is least smooth and its neighbours;
+    the largest is stored.
     """
     angles = np.zeros(1)
     response, error = _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads)
@@ -199,21 +200,30 @@ def _of_film(profile, wavelengths, speeds, positions, angle):
     if profile is None:
         return unknown
     distinct, inverse = np.unique(speeds, return_inverse=True)
+    inside = np.abs(positions) <= 1.0
     try:
         response = changed_waves(profile, wavelengths, distinct, positions, angle)
-        curvature = np.abs(np.diff(response, 2, axis=1)).max(axis=(0, 2))
-        at = np.argmax(curvature) + 1
-        between = np.sqrt(wavelengths[at - 1 : at + 1] * wavelengths[at : at + 2])
+        between = _least_smooth(response[..., inside], wavelengths)
         exact = [_of_wave(profile, each, distinct, positions, angle) for each in between]
     except ConvergenceError as error:
         log.warning("%s", error)
         return unknown
     found = at_wavelengths(between, wavelengths, response, positions, angle)
-    errors = np.abs(found - np.stack(exact, axis=1))
-    errors = np.sqrt(np.mean(errors[..., np.abs(positions) <= 1.0] ** 2, axis=-1)).max(axis=1)
+    errors = np.abs(found - np.stack(exact, axis=1))[..., inside]
+    errors = np.sqrt(np.mean(errors**2, axis=-1)).max(axis=1)
     inverse = inverse.reshape(speeds.shape)
     rounded = six_digits(response.real) + 1j * six_digits(response.imag)
     return rounded[inverse], six_digits(errors)[inverse]
+
+
+def _least_smooth(response, wavelengths):
+    """Wavelengths between those where the response at each speed is least smooth."""
+    solved = max(np.count_nonzero(np.abs(response - 1.0).max(axis=(0, 2))), 3)
+    order = min(4, solved - 1)  # the error of a cubic spline goes with the fourth derivative
+    differences = np.diff(response[:, :solved], order, axis=1)
+    middle = np.argmax(np.mean(np.abs(differences) ** 2, axis=-1), axis=1) + order // 2
+    longer = np.unique([middle - 1, middle])
+    return np.sqrt(wavelengths[longer] * wavelengths[longer + 1])
 
 
 def changed_waves(

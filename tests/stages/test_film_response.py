@@ -84,20 +84,21 @@ def test_rollers_change_places_with_the_slip_and_are_equal_without(found):
     assert np.abs(response[0, 0] - response[0, 1]).max() > 0.1
 
 
-def test_the_error_of_interpolation_is_what_a_wave_between_shows(slipping, files, found):
+@pytest.mark.parametrize("roller", [1, 2])
+def test_the_error_of_interpolation_is_what_a_wave_between_shows(slipping, files, found, roller):
     at = {"temperature": 80.0, "force": 1600.0}
     profile = profiles(slipping, files).sel(**at).item()
-    one = found.sel(**at, slide_to_roll_ratio=1.0, roller=1)
+    one = found.sel(**at, slide_to_roll_ratio=1.0, roller=roller)
     positions = one["film_position"].values
     scaled = one["wavelength"].values / one["contact_half_width"].item()
     inside = np.abs(positions) <= 1.0
-    assert 0.0 < one["interpolation_error"] < 0.01
-    for number in range(0, scaled.size - 1, 4):
+    assert 0.0 < one["interpolation_error"] < 0.02
+    for number in range(0, scaled.size - 1, 2):
         between = np.sqrt(scaled[number] * scaled[number + 1])
         estimated = at_wavelengths(np.array([between]), scaled, transfer(one).values, positions)
-        exact = WaveResponse(profile, between).transfer(1.5, positions)
+        exact = WaveResponse(profile, between).transfer(1.0 + (1.5 - roller), positions)
         error = np.sqrt(np.mean(np.abs(estimated[0] - exact)[inside] ** 2))
-        assert error < 1.5 * one["interpolation_error"].item() + 1e-3
+        assert error < 2.0 * one["interpolation_error"].item() + 1e-3
 
 
 @pytest.mark.parametrize("slip", [0.0, 1.0])
