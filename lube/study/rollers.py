@@ -251,7 +251,7 @@ class Roughness(OwnRoughness):
     longest_wavelength: _LongestWavelength
     """longest wavelength of the lines, 2 pi / q_min; if it is the contact width, a larger force
     level redraws all lines and changes the probability at all points: adding 3200 N to the paper's
-    study multiplies it by 0.86 to 0.61
+    study multiplies it by 0.85 to 0.64
     """
     shortest_wavelength: _ShortestWavelength
     """shortest wavelength of the lines, 2 pi / q_max; break-up of the layer depends on it"""
