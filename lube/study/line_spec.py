@@ -242,14 +242,13 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     ------
     StudyError
         If the grid is too coarse for the shortest wavelength of a line, a perimeter too short for
-        the longest, the height step unsuitable for the roughness, the kurtosis too small for the
-        skewness, or a lay without an angle or with nothing but an angle.
+        the longest, the height step unsuitable for the roughness, or the kurtosis too small for
+        the skewness.
     """
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
     width = 2.0 * float(rollers.contact_half_width(largest_force))
     each = zip(ROLLERS, rollers.rms_heights, strict=True)
     lines = tuple(_rough_line(rollers, roughness, *one, spacing, width) for one in each)
-    _check_lay_angle(rollers, roughness, lines)
     return LineSpec(lines=lines, spacing=spacing, height_step=roughness.height_step)
 
 
@@ -339,15 +338,6 @@ def _lay(own, key):
             "for ridges along rolling, 90 deg for ridges across"
         )
     return {"lay_ratio": own.lay_ratio, "lay_angle": own.lay_angle}
-
-
-def _check_lay_angle(rollers, roughness, lines):
-    """Refuse an angle between rolling and the ridges of surfaces that have none."""
-    for own in (roughness, rollers.first.roughness, rollers.second.roughness):
-        angle = own.lay_angle if own else None
-        if angle is not None and all(line.lay_ratio == 1.0 for line in lines):
-            needed = "need a lay_ratio above 1 with it: how many times longer than wide they are"
-            raise StudyError(f"lay_angle: got {angle:g} deg for ridges, {needed}")
 
 
 def _beyond_cutoffs(own, longest, shortest, key):
