@@ -75,14 +75,15 @@ def test_the_viscosity_gives_that_film(rollers, oil, needed):
     assert kinematic == pytest.approx(found["dynamic_viscosity"].item())
 
 
-def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers, oil):
+def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers, oil, monkeypatch):
     """Beyond some speed heating makes the film thinner again: the answer lies below."""
+    monkeypatch.setattr(required, "FACTORS", np.geomspace(1e-3, 1e3, 151))
     inlet = {"inlet_shear_heating": "computed", "inlet_meniscus": "0.5 mm"}
-    given = inlet | RUNS | {"share": SHARE}
+    given = inlet | FEW | {"share": SHARE}
     found = lube.required_speed(rollers, oil, **without("speed"), **given)
     speeds = found["speed"].item() * np.array([1.0, 1.2, 1e3]), "rpm"
     films = lube.film(rollers, oil, **without("speed"), speed=speeds, **inlet)["film_thickness"]
-    assert films[0].item() == pytest.approx(found["film_thickness"].item(), rel=1e-3)
+    assert films[0].item() == pytest.approx(found["film_thickness"].item(), rel=3e-3)
     assert films[0] < films[1] and films[2] < films[1]
     found = lube.required_viscosity(rollers, oil, **POINT, **given)
     viscosity = 1e-3 * found["dynamic_viscosity"].item()
@@ -90,7 +91,7 @@ def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers
     levels = xr.DataArray(400.0), xr.DataArray(100.0), [FORMULA]
     inlet["inlet_meniscus"] = 0.5e-3
     film = film_at(properties, rollers.pair, *levels, **inlet)["film_thickness"].item()
-    assert 1e6 * film == pytest.approx(found["film_thickness"].item(), rel=1e-3)
+    assert 1e6 * film == pytest.approx(found["film_thickness"].item(), rel=3e-3)
 
 
 def of_roughness(rms, spec):
