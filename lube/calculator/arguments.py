@@ -1,7 +1,7 @@
 """Check the arguments of the calculator: numbers with units, choices and counts."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypedDict, get_args
 
 import numpy as np
@@ -217,6 +217,14 @@ class Choices:
         if inlet_meniscus is not None:
             inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
         return cls(Gap(**gap), models, **film, inlet_meniscus=inlet_meniscus)
+
+    @classmethod
+    def of_smooth_rollers(
+        cls, inlet_shear_heating: InletHeating, inlet_meniscus: OneAmount | None
+    ) -> "Choices":
+        """As `of`, of a film without contact, which no lines or surfaces can refuse."""
+        choices = cls.of(inlet_shear_heating=inlet_shear_heating, inlet_meniscus=inlet_meniscus)
+        return replace(choices, models=())
 
 
 def _check_choice(name, value, options):

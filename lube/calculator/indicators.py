@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import xarray as xr
 
 from lube.calculator.answers import Answer, variable_of
-from lube.calculator.arguments import FORMULA, amount, single
-from lube.calculator.operating_points import smooth_film, with_remarks
+from lube.calculator.arguments import FORMULA, Choices, amount, bare_number, single
+from lube.calculator.operating_points import film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.grid.films import FilmGroups
 from lube.grid.indicators import indicators as published
@@ -69,9 +69,9 @@ def indicators(
     >>> f"{resistance.item():.2f} {resistance.attrs['units']}"
     '0.56 N'
     """
-    point = force, speed, temperature, film_formula
-    inlet = inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
-    table = smooth_film(rollers, oil, *point, *inlet)
+    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
+    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     pair, groups = rollers.pair, FilmGroups.of(table)
     scale = 2.0 * pair.reduced_modulus * pair.reduced_radius
     resistance = scale * groups.of_profiles("rolling_resistance")

@@ -1,7 +1,6 @@
 """Film, probability of contact and resistance at operating points."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -122,28 +121,10 @@ def film(
     >>> f"{found.film_thickness.item():.2f} um, lambda ratio {found.lambda_ratio.item():.1f}"
     '1.05 um, lambda ratio 3.7'
     """
-    point = force, speed, temperature, film_formula
-    inlet = inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
-    table = smooth_film(rollers, oil, *point, *inlet)
-    return with_remarks(of_film(table), table, rollers)
-
-
-def smooth_film(
-    rollers: Rollers,
-    oil: Oil,
-    force: Amount,
-    speed: Amount,
-    temperature: Amount,
-    film_formula: str | Sequence[str],
-    inlet_shear_heating: InletHeating,
-    inlet_meniscus: OneAmount | None,
-    slide_to_roll_ratio: float,
-) -> xr.Dataset:
-    """As `film_in_si`, with the arguments of `film`: without contact, which lines may not have."""
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of(inlet_shear_heating=inlet_shear_heating, inlet_meniscus=inlet_meniscus)
-    choices = replace(choices, models=())
-    return film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
+    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
+    return with_remarks(of_film(table), table, rollers)
 
 
 def of_film(table: xr.Dataset) -> xr.Dataset:

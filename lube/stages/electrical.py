@@ -48,8 +48,10 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     readings, length = _readings(study, film, rigs, slip, threads)
     share = readings["true_contact_share"]
     if study.rig.has_surfaces:
-        table["breakdown_ratio"] = _contact_of_surfaces(study, film, threads)["breakdown_ratio"]
+        surfaces = _contact_of_surfaces(study, film, threads)
+        table["breakdown_ratio"] = surfaces["breakdown_ratio"]
     else:
+        surfaces = None
         contact = inputs["contact"].isel(film_formula=0, drop=True)
         contact = contact.sel(slide_to_roll_ratio=slip, drop=True)
         length = contact["mean_contact_length"].mean("realisation")
@@ -65,7 +67,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     table["impedance_phase"] = xr.concat(phases, "rig", coords="minimal", compat="override")
     found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(six_digits)
     found = found.merge(readings, join="exact")
-    found["discharge_probability"] = _discharges(study, film, rigs, threads)
+    found["discharge_probability"] = _discharges(study, film, rigs, threads, surfaces)
     found = found.drop_attrs().assign_coords(rig=list(rigs), reading=list(READINGS))
     found = found.assign_coords(threshold=list(study.experiment.thresholds))
     found["rig_source"] = "rig", ["the study", *(one.source for one in PRESETS.values())]
@@ -137,8 +139,10 @@ def _readings(study, film, rigs, slip, threads):
     return found, xr.DataArray(length, dims=POINT_DIMS)
 
 
-def _discharges(study, film, rigs, threads):
+def _discharges(study, film, rigs, threads, surfaces):
     """Share of time in which a rig's voltage breaks down the oil, without contact.
+
+    Of surfaces, if the rig has them, contact under the films themselves is known.
 
     Surfaces discharge where they are closer than a certain distance, as if the film were thinner by
     it. A film with a shape is thinner in proportion, by this much where its formula refers to.
@@ -146,9 +150,9 @@ def _discharges(study, film, rigs, threads):
 
     def touching(closer):
         thickness = (film["film_thickness"] - closer).clip(min=0.0)
-        if study.rig.has_surfaces:
+        if surfaces is not None:
             thicker = (thickness / film["film_thickness"]).values.ravel()
-            contact = _contact_of_surfaces(study, film, threads, thicker)
+            contact = _contact_of_surfaces(study, film, threads, thicker) if closer else surfaces
             return contact["geometric_contact_probability"].values
         windows = study_windows(study, film.assign(film_thickness=thickness))
         return windows.on_pairs(study.line_spec, study.seed, PAIRS, threads)[:, 0].mean(axis=0)
