@@ -2,21 +2,21 @@
 
 from lube.archive.explain import explain as explain
 from lube.calculator.answers import Answer as Answer
-from lube.calculator.arguments import COMPLETE as COMPLETE
+from lube.calculator.choices import COMPLETE as COMPLETE
+from lube.calculator.contact import contact_probability as contact_probability
 from lube.calculator.duty_cycle import duty as duty
+from lube.calculator.film import film as film
 from lube.calculator.indicators import indicators as indicators
+from lube.calculator.oil import Oil as Oil
 from lube.calculator.one_point import profile as profile
 from lube.calculator.one_point import trace as trace
-from lube.calculator.operating_points import contact_probability as contact_probability
-from lube.calculator.operating_points import film as film
-from lube.calculator.parts import Oil as Oil
-from lube.calculator.parts import Rollers as Rollers
 from lube.calculator.planning import plan as plan
 from lube.calculator.required import required_film as required_film
 from lube.calculator.required import required_roughness as required_roughness
 from lube.calculator.required import required_speed as required_speed
 from lube.calculator.required import required_temperature as required_temperature
 from lube.calculator.required import required_viscosity as required_viscosity
+from lube.calculator.rollers import Rollers as Rollers
 from lube.ehl.film_formulas import FORMULAS as FORMULAS
 from lube.errors import DataError as DataError
 from lube.errors import LubeError as LubeError

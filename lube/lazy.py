@@ -25,7 +25,7 @@ def homes(package: str) -> dict[str, str]:
     Examples
     --------
     >>> homes("lube")["Oil"]
-    'lube.calculator.parts'
+    'lube.calculator.oil'
     """
     stub = Path(__file__).parents[1].joinpath(*package.split("."), "__init__.pyi")
     return {

@@ -1,57 +1,66 @@
-"""Check the arguments of the calculator: numbers with units, choices and counts."""
+"""Check the arguments of the calculator: numbers with units, names and counts."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TypedDict, get_args
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 import numpy as np
 import xarray as xr
 
 from lube.errors import LubeError, StudyError, located, right_one, shown
-from lube.grid.gap import PLAIN, Gap
 from lube.study.field_types import bounded
 from lube.study.rig_settings import RIG_REALISATIONS
-from lube.study.study import Study
-from lube.types import (
-    Amount,
-    ContactModel,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-)
+from lube.threads import progress_bars
+from lube.types import Amount
 from lube.units import convert, parse_number, parse_quantity
 
-FORMULA = "pan-hamrock"
-"""Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
-
-
-class Model(TypedDict):
-    """Arguments that choose the model of an answer."""
-
-    film_formula: str
-    film_shape: FilmShape
-    roughness_deformation: RoughnessDeformation
-    contact_model: ContactModel
-    inlet_shear_heating: InletHeating
-
-
-COMPLETE: Model = {
-    "film_formula": "computed",
-    "film_shape": "computed",
-    "inlet_shear_heating": "computed",
-    "roughness_deformation": "computed",
-    "contact_model": "surface",
-}
-"""The most complete model of this package: film, its shape and its response to the roughness by
-Reynolds' equation, heating at the inlet, and contact of the rollers' surfaces over their length.
-The contact is fully flooded unless ``inlet_meniscus`` is given, and the oil carries the whole load
-unless ``load_sharing`` says otherwise."""
-REALISATIONS = 64
-SEED = 1
 Point = Mapping[str, xr.DataArray]
 """Force, speed and temperature by name."""
+_TAKEN_BY = {
+    "bands": "only contact_probability, duty and the required_ functions take it",
+    "contact_model": "only contact_probability, duty, trace, plan and the required_ functions do",
+    "load_sharing": "only contact_probability and duty take it: the oil carries the whole load",
+    "slide_to_roll_ratio": "only film, indicators, contact_probability, trace and plan take it; "
+    "duty: both speeds",
+}
+"""Choices that some functions lack, and which have them."""
+_Function = TypeVar("_Function", bound=Callable)
+
+
+def checked(function: _Function) -> _Function:
+    """Make a function refuse unknown arguments, and `rollers` and `oil` of other types.
+
+    If it takes long, it shows its progress.
+    """
+    signature, owner = inspect.signature(function), function.__qualname__.split(".")[0]
+    parameters = signature.parameters
+
+    @functools.wraps(function)
+    def call(*args, **kwargs):
+        for name in kwargs.keys() - parameters.keys():
+            raise StudyError(f"{owner}: {name}: unknown argument, {_meant(name, parameters)}")
+        try:
+            given = signature.bind(*args, **kwargs).arguments
+        except TypeError as error:
+            raise StudyError(f"{owner}: {error}") from None
+        for name in ("rollers", "oil"):
+            if name in given and not isinstance(given[name], kind := parameters[name].annotation):
+                needed = f"need lube.{kind.__name__}(...)"
+                raise StudyError(f"{name}: got {shown(given[name])}, {needed}")
+        with progress_bars():
+            return function(*args, **kwargs)
+
+    return call
+
+
+def _meant(name, parameters):
+    """Name the arguments that were probably meant: those that contain the name, or the nearest."""
+    if name in _TAKEN_BY:
+        return _TAKEN_BY[name]
+    names = [each for each in parameters if each != "self"]
+    longer = [each for each in names if name in each]
+    return f"did you mean {' or '.join(longer)}?" if longer else right_one(name, names)
 
 
 def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArray:
@@ -163,73 +172,6 @@ def single(values: xr.DataArray) -> float:
     for name, size in values.sizes.items():
         raise StudyError(f"{name}: got {size} values, need one")
     return values.item()
-
-
-@dataclass(frozen=True)
-class Choices:
-    """What film and contact are made of, apart from the film formula.
-
-    Attributes
-    ----------
-    gap : Gap
-        How film and roughness make up the gap.
-    models : tuple of str
-        Contact models.
-    load_sharing : str
-        ``none``, or ``iterated``: the asperities carry a share of the load.
-    inlet_shear_heating : str
-        How heating at the inlet thins the film, as in a study.
-    inlet_meniscus : float, optional
-        Distance of the oil's meniscus before the line of centres, m; None if the contact is fully
-        flooded.
-    """
-
-    gap: Gap = PLAIN
-    models: tuple[ContactModel, ...] = ("line",)
-    load_sharing: LoadSharing = "none"
-    inlet_shear_heating: InletHeating = "none"
-    inlet_meniscus: float | None = None
-
-    @classmethod
-    def of(
-        cls,
-        film_shape: FilmShape = "flat",
-        roughness_deformation: RoughnessDeformation = "none",
-        contact_model: ContactModel | Sequence[ContactModel] = "line",
-        inlet_shear_heating: InletHeating = "none",
-        inlet_meniscus: OneAmount | None = None,
-        load_sharing: LoadSharing = "none",
-    ) -> "Choices":
-        """Choose by the values of a study's keys.
-
-        Raises
-        ------
-        StudyError
-            If a study has no such choice.
-        """
-        gap = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
-        film = {"load_sharing": load_sharing, "inlet_shear_heating": inlet_shear_heating}
-        for name, value in (gap | film).items():
-            _check_choice(name, value, get_args(Study.model_fields[name].annotation))
-        models = tuple(np.ravel(contact_model).tolist())
-        for model in models or [contact_model]:
-            _check_choice("contact_model", model, get_args(ContactModel))
-        if inlet_meniscus is not None:
-            inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
-        return cls(Gap(**gap), models, **film, inlet_meniscus=inlet_meniscus)
-
-    @classmethod
-    def of_smooth_rollers(
-        cls, inlet_shear_heating: InletHeating, inlet_meniscus: OneAmount | None
-    ) -> "Choices":
-        """As `of`, of a film without contact, which no lines or surfaces can refuse."""
-        choices = cls.of(inlet_shear_heating=inlet_shear_heating, inlet_meniscus=inlet_meniscus)
-        return replace(choices, models=())
-
-
-def _check_choice(name, value, options):
-    if value not in options:
-        raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
 
 
 def one_name(argument: str, name: str) -> str:

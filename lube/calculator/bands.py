@@ -8,8 +8,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from lube.calculator.arguments import Choices
-from lube.calculator.parts import Oil, Rollers
+from lube.calculator.choices import Choices
+from lube.calculator.oil import Oil
+from lube.calculator.rollers import Rollers
 from lube.errors import StudyError, located, shown
 from lube.schema import LIMITS, POINT_DIMS
 from lube.study.field_types import validate

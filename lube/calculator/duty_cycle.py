@@ -10,27 +10,13 @@ import pandas as pd
 import xarray as xr
 
 from lube.calculator.answers import Answer
-from lube.calculator.arguments import (
-    FORMULA,
-    REALISATIONS,
-    SEED,
-    Choices,
-    amount,
-    check_realisations,
-    one_name,
-)
+from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.bands import Assumptions
-from lube.calculator.operating_points import (
-    check_contact,
-    ensemble,
-    film_model,
-    film_of_oil,
-    joined,
-    of_film,
-    of_surface,
-    with_remarks,
-)
-from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
+from lube.calculator.contact import ensemble, joined, of_surface
+from lube.calculator.film import check_contact, film_model, film_of_oil, of_film, with_remarks
+from lube.calculator.oil import Oil
+from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import with_pair_limits
 from lube.errors import DataError, located, right_one, shown
 from lube.schema import LIMITS, values_with_limits
@@ -65,7 +51,7 @@ _OF_PAIR = "probability_pair_lower", "probability_pair_upper"
 _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed")
 
 
-@with_parts
+@checked
 def duty(
     points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | File,
     rollers: Rollers,

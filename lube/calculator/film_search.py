@@ -7,7 +7,7 @@ import xarray as xr
 
 from lube.calculator.arguments import bare_number, check_realisations
 from lube.calculator.bands import Assumptions
-from lube.calculator.operating_points import conditions_of
+from lube.calculator.film import conditions_of
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows

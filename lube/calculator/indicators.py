@@ -5,16 +5,18 @@ from collections.abc import Sequence
 import xarray as xr
 
 from lube.calculator.answers import Answer, variable_of
-from lube.calculator.arguments import FORMULA, Choices, amount, bare_number, single
-from lube.calculator.operating_points import film_in_si, with_remarks
-from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.calculator.arguments import amount, bare_number, checked, single
+from lube.calculator.choices import FORMULA, Choices
+from lube.calculator.film import film_in_si, with_remarks
+from lube.calculator.oil import Oil
+from lube.calculator.rollers import Rollers
 from lube.grid.films import FilmGroups
 from lube.grid.indicators import indicators as published
 from lube.physics.indicators import bearing_speed, viscosity_ratio
 from lube.types import Amount, InletHeating, OneAmount
 
 
-@with_parts
+@checked
 def indicators(
     rollers: Rollers,
     oil: Oil,

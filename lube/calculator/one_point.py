@@ -3,17 +3,11 @@
 import numpy as np
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import (
-    FORMULA,
-    SEED,
-    Choices,
-    bare_number,
-    conditions,
-    one_name,
-    single,
-)
-from lube.calculator.operating_points import check_contact, film_in_si, film_model
-from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.calculator.arguments import bare_number, checked, conditions, one_name, single
+from lube.calculator.choices import FORMULA, SEED, Choices
+from lube.calculator.film import check_contact, film_in_si, film_model
+from lube.calculator.oil import Oil
+from lube.calculator.rollers import Rollers
 from lube.contact.rough_pair import roughness_batch
 from lube.contact.surface_trace import surface_traces
 from lube.errors import RangeError
@@ -26,7 +20,7 @@ from lube.study.oil_properties import lubricant_table
 from lube.types import ContactModel, FilmShape, InletHeating, OneAmount, RoughnessDeformation
 
 
-@with_parts
+@checked
 def trace(
     rollers: Rollers,
     oil: Oil,
@@ -109,7 +103,7 @@ def _surface_trace(rollers, film, pair, slip):
     return described(found.assign(contact_resistance=("time", resistance)).drop_attrs())
 
 
-@with_parts
+@checked
 def profile(
     rollers: Rollers, oil: Oil, force: OneAmount, speed: OneAmount, temperature: OneAmount
 ) -> Answer:

@@ -6,18 +6,12 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer
-from lube.calculator.arguments import (
-    FORMULA,
-    REALISATIONS,
-    SEED,
-    Choices,
-    amount,
-    bare_number,
-    check_realisations,
-    one_name,
-)
-from lube.calculator.operating_points import ensemble, film_in_si, of_film, with_remarks
-from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.calculator.arguments import amount, bare_number, check_realisations, checked, one_name
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
+from lube.calculator.contact import ensemble
+from lube.calculator.film import film_in_si, of_film, with_remarks
+from lube.calculator.oil import Oil
+from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import sample_size
 from lube.contact.surface_strip import SURFACES, surface_contact
 from lube.contact.windows import ContactWindows
@@ -49,7 +43,7 @@ from lube.types import (
 )
 
 
-@with_parts
+@checked
 def plan(
     rollers: Rollers,
     oil: Oil,

@@ -13,20 +13,13 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import (
-    FORMULA,
-    REALISATIONS,
-    SEED,
-    Choices,
-    amount,
-    one_name,
-    rotation_speed,
-    single,
-)
+from lube.calculator.arguments import amount, checked, one_name, rotation_speed, single
 from lube.calculator.bands import Assumptions
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
+from lube.calculator.film import conditions_of, film_in_si
 from lube.calculator.film_search import FilmSearch, check_known
-from lube.calculator.operating_points import conditions_of, film_in_si
-from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.calculator.oil import Oil
+from lube.calculator.rollers import Rollers
 from lube.ehl.film_formulas import formula
 from lube.grid.film_profiles import scaled_film
 from lube.physics.pressure_laws import ROELANDS_VISCOSITY
@@ -42,7 +35,7 @@ _ANY_OIL, _ANY = "mobilgear-shc-xmp-320", {"speed": 100.0, "temperature": 60.0}
 _HEIGHTS = "rms_roughness", "first_rms_roughness", "second_rms_roughness"
 
 
-@with_parts
+@checked
 def required_film(
     rollers: Rollers,
     force: OneAmount,
@@ -107,7 +100,7 @@ def required_film(
     return _labelled(search.films(half_width, points_at))
 
 
-@with_parts
+@checked
 def required_viscosity(
     rollers: Rollers,
     oil: Oil,
@@ -178,7 +171,7 @@ def required_viscosity(
     return _labelled({"dynamic_viscosity": viscosity, "kinematic_viscosity": kinematic} | films)
 
 
-@with_parts
+@checked
 def required_speed(
     rollers: Rollers,
     oil: Oil,
@@ -235,7 +228,7 @@ def required_speed(
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
 
 
-@with_parts
+@checked
 def required_temperature(
     rollers: Rollers,
     oil: Oil,
@@ -293,7 +286,7 @@ def required_temperature(
     return _labelled({"temperature": found} | films)
 
 
-@with_parts
+@checked
 def required_roughness(
     rollers: Rollers,
     oil: Oil,

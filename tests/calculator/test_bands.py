@@ -5,8 +5,8 @@ import pytest
 
 import lube
 from lube import LubeError
-from lube.calculator.arguments import Choices
 from lube.calculator.bands import RANGES, Assumptions
+from lube.calculator.choices import Choices
 
 POINTS = {"force": "400 N", "speed": "100 rpm", "temperature": ["60 degC", "80 degC"]}
 KELVIN = {"temperature": {"range": "+- 2 K", "source": "thermocouple"}}
@@ -124,7 +124,7 @@ def test_ranges_without_an_answer_are_refused_before_any_film(rollers, oil, monk
     def film_of_oil(*_, **__):
         raise AssertionError("a film was found")
 
-    monkeypatch.setattr("lube.calculator.operating_points.film_of_oil", film_of_oil)
+    monkeypatch.setattr("lube.calculator.film.film_of_oil", film_of_oil)
     monkeypatch.setattr("lube.calculator.duty_cycle.film_of_oil", film_of_oil)
     point = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
     given = {"points": [point]} if verb == "duty" else point

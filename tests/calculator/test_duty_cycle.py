@@ -7,8 +7,8 @@ import pytest
 import lube
 from lube import LubeError, Rollers
 from lube.calculator import bands
-from lube.calculator.arguments import FORMULA, Choices
 from lube.calculator.bands import Assumptions
+from lube.calculator.choices import FORMULA, Choices
 
 RUNS = {"realisations": 8, "seed": 2}
 POINTS = {

@@ -10,8 +10,8 @@ from made import on_few_surfaces
 import lube
 from lube import LubeError, Rollers
 from lube.calculator import film_search, required
-from lube.calculator.arguments import FORMULA
-from lube.calculator.operating_points import ensemble
+from lube.calculator.choices import FORMULA
+from lube.calculator.contact import ensemble
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN
 

@@ -8,8 +8,8 @@ from made import on_few_surfaces
 import lube
 from lube import LubeError, Rollers
 from lube.calculator import bands, film_search, required
-from lube.calculator.arguments import FORMULA, Choices
 from lube.calculator.bands import Assumptions
+from lube.calculator.choices import FORMULA, Choices
 
 pytestmark = pytest.mark.usefixtures("few_samples")
 

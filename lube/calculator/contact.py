@@ -1,4 +1,4 @@
-"""Film, probability of contact and resistance at operating points."""
+"""Probability of contact at operating points."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -6,27 +6,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import (
-    FORMULA,
-    REALISATIONS,
-    SEED,
-    Choices,
-    Point,
-    bare_number,
-    check_realisations,
-    conditions,
-)
+from lube.calculator.answers import Answer
+from lube.calculator.arguments import bare_number, check_realisations, checked, conditions
 from lube.calculator.bands import Assumptions
-from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
+from lube.calculator.film import conditions_of, film_in_si, formula_names, of_film, with_remarks
+from lube.calculator.oil import Oil
+from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import with_limits, with_pair_limits
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
-from lube.errors import StudyError, shown
 from lube.grid.discretise import speed_ratios
-from lube.grid.films import film_at
-from lube.grid.plausibility import remarks
 from lube.inference.surface_scatter import (
     revolution_size,
     surface_prediction,
@@ -34,8 +25,6 @@ from lube.inference.surface_scatter import (
 )
 from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
-from lube.study.rollers import RollerPair
-from lube.study.surface_checks import check_surfaces
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 from lube.types import (
@@ -46,223 +35,12 @@ from lube.types import (
     LoadSharing,
     OneAmount,
     RoughnessDeformation,
-    Values,
 )
-from lube.units import with_unit
 
-_FILM = (
-    "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
-    "entrainment_speed dynamic_viscosity"
-).split()
-_THINNING = "inlet_shear_heating_factor", "starvation_factor"
-"""Factors by which the film is thinner, where they are asked for."""
 _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
 
-@with_parts
-def film(
-    rollers: Rollers,
-    oil: Oil,
-    force: Amount,
-    speed: Amount,
-    temperature: Amount,
-    *,
-    film_formula: str | Sequence[str] = FORMULA,
-    inlet_shear_heating: InletHeating = "none",
-    inlet_meniscus: OneAmount | None = None,
-    slide_to_roll_ratio: float = 0.0,
-) -> Answer:
-    """Film thickness, lambda ratio and regime.
-
-    Parameters
-    ----------
-    rollers : Rollers
-        The two rollers.
-    oil : Oil
-        The oil between them.
-    force : str, sequence of str or tuple
-        Normal force, such as ``"800 N"``, or several: ``["400 N", "800 N"]`` or
-        ``([400, 800], "N")``.
-    speed : str, sequence of str or tuple
-        Rotation speed of the first roller in pure rolling, such as ``"100 rpm"``, or entrainment
-        speed, such as ``"0.5 m/s"``.
-    temperature : str, sequence of str or tuple
-        Temperature of rollers and oil, such as ``"60 degC"``.
-    film_formula : str or sequence of str, optional
-        Keys of `lube.FORMULAS`.
-    inlet_shear_heating : str, optional
-        How heating of the oil at the inlet thins the film, the more so the more the rollers slip:
-        ``"none"``; ``"zhu-cheng-1988"`` or ``"wilson-sheu-1983"`` by a formula; or ``"computed"``,
-        by the equation behind the latter.
-    inlet_meniscus : str, optional
-        Distance of the oil's meniscus before the line of centres, such as ``"1 mm"``, more than the
-        half-width of the contact. Without it the contact is fully flooded.
-    slide_to_roll_ratio : float, optional
-        Difference of the surface speeds over their mean, on which the heating depends.
-
-    Returns
-    -------
-    Answer
-        The film in customary units, with ``inlet_shear_heating_factor`` and ``starvation_factor``,
-        by which heating and starvation thin it, where they are asked for. Its dimensions are those
-        of film_formula, temperature, speed and force that have several values. Like ``lube
-        check``, its attribute ``remarks`` has a line for each value that may be a mistake or is
-        beyond the limits of the model, by the first film formula.
-
-    Raises
-    ------
-    LubeError
-        Which argument, what came, what is needed.
-
-    Examples
-    --------
-    >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
-    >>> found = film(rollers, Oil("mobilgear-shc-xmp-320"), "800 N", "100 rpm", "40 degC")
-    >>> f"{found.film_thickness.item():.2f} um, lambda ratio {found.lambda_ratio.item():.1f}"
-    '1.05 um, lambda ratio 3.7'
-    """
-    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus)
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
-    return with_remarks(of_film(table), table, rollers)
-
-
-def of_film(table: xr.Dataset) -> xr.Dataset:
-    """Variables of a film table that answers have."""
-    return table[[*_FILM, *(name for name in _THINNING if name in table)]]
-
-
-def film_in_si(
-    rollers: Rollers,
-    oil: Oil,
-    force: Amount,
-    speed: Amount,
-    temperature: Amount,
-    film_formula: str | Sequence[str],
-    choices: Choices,
-    slip: float = 0.0,
-) -> xr.Dataset:
-    """All variables of the film table in SI units, and the oil's viscosity.
-
-    The arguments are those of `film`, `contact_probability` and `ensemble`.
-    """
-    point = conditions(force, speed, temperature, rollers.pair.first.radius)
-    formulas = _names(film_formula)
-    check_contact(rollers, rollers.pair.contact_half_width(point["force"].values), choices)
-    model = film_model(rollers, choices, slip)
-    table = film_of_oil(oil, rollers.pair, point, formulas, **model)
-    dims = ("film_formula", "temperature", "speed", "force")
-    table = table.assign_coords(force=point["force"], speed=point["speed"])
-    table = table.transpose(*dims, ..., missing_dims="ignore")
-    return table if np.ndim(film_formula) else table.isel(film_formula=0)
-
-
-def check_contact(rollers: Rollers, half_width: Values, choices: Choices) -> None:
-    """Refuse contacts that lines or surfaces do not have, before films take their time.
-
-    Parameters
-    ----------
-    rollers : Rollers
-        The two rollers.
-    half_width : float or numpy.ndarray
-        Half-widths of the contacts, m.
-    choices : Choices
-        With the contact models.
-
-    Raises
-    ------
-    LubeError
-        As from `lube.study.surface_checks.check_surfaces`; or that a contact is finer than the grid
-        or wider than a roller's perimeter, or reaches the meniscus, or that no line stands for the
-        rollers.
-    """
-    spec, widest = rollers.lines, 2.0 * np.max(half_width).item()
-    meniscus = choices.inlet_meniscus
-    if meniscus is not None and meniscus <= 0.5 * widest:
-        needed = f"more than {with_unit(0.5 * widest, 'm', 3)}, the half-width of the contact"
-        raise StudyError(f"inlet_meniscus: got {with_unit(meniscus, 'm', 3)}, need {needed}")
-    if "line" in choices.models:
-        for width in (2.0 * np.min(half_width).item(), widest):
-            spec.check_width(width, "force: the contact")
-        spec.check_follows_rolling()
-    if "surface" in choices.models:
-        check_surfaces(spec, rollers.pair.length, widest, choices.gap)
-
-
-def _names(film_formula):
-    """Film formulas as a list."""
-    formulas = np.ravel(film_formula).tolist()
-    if not formulas or not isinstance(formulas[0], str):
-        raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    return formulas
-
-
-def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any]:
-    """Arguments of `film_of_oil` for some choices and a slide-to-roll ratio."""
-    choices.gap.check_slip(slip)
-    answered = {"line": "answered_lines", "surface": "answered_surfaces"}
-    used = choices.models if choices.gap.is_answered else ()
-    has_surfaces = "surface" in choices.models or choices.load_sharing != "none"
-    return {
-        "with_shape": choices.gap.has_shape,
-        "slide_to_roll_ratio": slip,
-        "rough_surfaces": rollers.lines if has_surfaces else None,
-        "load_sharing": choices.load_sharing,
-        "inlet_shear_heating": choices.inlet_shear_heating,
-        "inlet_meniscus": choices.inlet_meniscus,
-        **{answered[model]: rollers.lines for model in used},
-    }
-
-
-def film_of_oil(
-    oil: Oil, pair: RollerPair, point: Point, formulas: Sequence[str], **choices: Any
-) -> xr.Dataset:
-    """Film table with the oil's viscosity; the point's numbers are in N, rpm and degC.
-
-    Raises
-    ------
-    StudyError
-        If the inlet heats up, and the oil's thermal conductivity is not known.
-    """
-    properties, heating = oil.at(point["temperature"]), choices["inlet_shear_heating"]
-    if heating != "none" and properties["thermal_conductivity"].isnull().any():
-        needed = "need none, or an oil with thermal_conductivity"
-        raise StudyError(f"inlet_shear_heating: got {heating}, {needed}")
-    table = film_at(properties, pair, point["force"], point["speed"], formulas, **choices)
-    if heating == "none":
-        del table["inlet_shear_heating_factor"]
-    if choices["inlet_meniscus"] is not None:
-        table["inlet_meniscus"] = choices["inlet_meniscus"]
-    return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
-
-
-def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answer:
-    """Answer in customary units, with its remarks and those of `lube check`.
-
-    Parameters
-    ----------
-    found : xarray.Dataset
-        Results in SI units.
-    table : xarray.Dataset
-        The film table that it comes from.
-    rollers : Rollers
-        The two rollers.
-
-    Returns
-    -------
-    Answer
-        With the attribute ``remarks``, one line for each remark.
-    """
-    notes = [found.attrs.get("remarks"), *remarks(table, rollers.lines, rollers.pair)]
-    if halved := int((table.get("inlet_shear_heating_factor", xr.DataArray(1.0)) < 0.5).sum()):
-        notes.append(
-            f"inlet_shear_heating: at {halved} operating points the film is less than half as "
-            "thick, where no model of the heating is reliable"
-        )
-    return described(found.assign_attrs(remarks="\n".join(filter(None, notes))))
-
-
-@with_parts
+@checked
 def contact_probability(
     rollers: Rollers,
     oil: Oil,
@@ -388,7 +166,7 @@ def contact_probability(
     )
     pair = rollers.rough_pair(seed, choices.gap)
     check_realisations(realisations, seed)
-    assumed = Assumptions(bands, rollers, oil, choices, _names(film_formula)[0], seed)
+    assumed = Assumptions(bands, rollers, oil, choices, formula_names(film_formula)[0], seed)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
     found = of_film(table)
@@ -405,15 +183,6 @@ def contact_probability(
         samples = assumed.probabilities(points)
         found = found.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
     return with_remarks(found, table, rollers)
-
-
-def conditions_of(table: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Force in N, speed in rpm and temperature in degC of a table from `film_in_si`.
-
-    And ``viscosity_factor`` if the table has it.
-    """
-    names = "force", "speed", "temperature", "viscosity_factor"
-    return {name: table[name] for name in names if name in table.coords}
 
 
 def of_surface(

@@ -1,16 +1,13 @@
-"""Rollers and oils made of numbers are those of a study and of a lubricant record."""
+"""Rollers made of numbers are those of a study."""
 
 import pickle
 
 import numpy as np
 import pytest
-from studies import CONFIG, OIL
+from studies import CONFIG
 
 import lube
-from lube import LubeError, Oil, Rollers
-from lube.stages import load_record
-
-TWO = {"40 degC": "335 mm^2/s", "100 degC": "38.3 mm^2/s"}
+from lube import LubeError, Rollers
 
 
 def test_the_defaults_are_the_papers_rollers(study):
@@ -99,55 +96,18 @@ def test_a_height_measured_within_cutoffs_is_that_of_the_waves_within_them():
     assert own.pair.rms_heights[0] == 2e-7 < own.pair.rms_heights[1]
 
 
-def test_an_oil_of_numbers_is_that_of_a_record():
-    record, given = Oil(OIL), Oil(viscosity=TWO, density="860 kg/m^3", base="polyalphaolefin")
-    temperatures = ["40 degC", "57 degC", "100 degC"]
-    one, other = record.properties(temperatures), given.properties(temperatures)
-    for name in ("dynamic_viscosity", "density", "pressure_viscosity_coefficient"):
-        np.testing.assert_array_equal(one[name], other[name])
-    assert record.record == load_record(OIL)
-
-
-@pytest.mark.parametrize("name", ["PAO", "pao", "Polyalphaolefin"])
-def test_a_base_oil_may_be_abbreviated_in_any_case(name):
-    assert Oil(viscosity=TWO, base=name).record.pressure_viscosity.gold_base == "polyalphaolefin"
-
-
-def test_a_temperature_range_extends_the_law_of_the_viscosity():
-    law = Oil(viscosity=TWO, temperature_range=["20 degC", "120 degC"])
-    assert repr(law).endswith("valid from 20 to 120 degC>")
-    wide = law.properties(["60 degC", "110 degC"])["dynamic_viscosity"]
-    assert wide[0] == Oil(viscosity=TWO).properties("60 degC")["dynamic_viscosity"]
-    assert 0.0 < wide[1] < wide[0]
-    shipped = Oil(OIL, temperature_range=([20.0, 120.0], "degC"))
-    assert shipped.properties("110 degC")["dynamic_viscosity"] > 0.0
-
-
-def test_an_oil_of_a_table_of_dynamic_viscosities(tmp_path):
-    path = tmp_path / "oil.csv"
-    path.write_text("temperature [degC], dynamic_viscosity [mPa*s]\n40, 100\n80, 20\n")
-    of_table = Oil(viscosity=path, pressure_viscosity="18 1/GPa").properties("40 degC")
-    of_numbers = Oil(viscosity={"40 degC": "100 mPa*s", "80 degC": "20 cP"}).properties("40 degC")
-    assert of_table["dynamic_viscosity"].item() == pytest.approx(100.0, rel=1e-12)
-    assert of_table["pressure_viscosity_coefficient"].item() == pytest.approx(18.0)
-    assert of_numbers["dynamic_viscosity"].item() == pytest.approx(100.0, rel=1e-12)
-
-
-def test_both_show_themselves_and_travel_between_processes():
-    rollers, oil = Rollers("50 mm", "0.2 um"), Oil(OIL)
+def test_they_show_themselves_and_travel_between_processes():
+    rollers = Rollers("50 mm", "0.2 um")
     assert repr(rollers) == (
         "<Rollers: radii 50 and 50 mm, rms roughness 0.2 and 0.2 um, 10 mm long, "
         "waves 800 µm to 3.14 µm>"
     )
-    assert repr(oil) == "<Oil: Mobilgear SHC XMP 320, valid from 40 to 100 degC>"
     assert pickle.loads(pickle.dumps(rollers)).lines == rollers.lines
-    assert pickle.loads(pickle.dumps(oil)).record == oil.record
 
 
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Oil(viscosity="missing.csv"), "missing.csv: cannot be read: No such file"),
         (lambda: Rollers("50", "0.2 um"), "Rollers: radius: got '50', need a number with its unit"),
         (
             lambda: Rollers("50 mm", "0.2 um", shortest_wavelength="10 points"),
@@ -174,26 +134,6 @@ def test_both_show_themselves_and_travel_between_processes():
             lambda: Rollers("50 mm", "0.2 um", hurst_exponent=1.5),
             "Rollers: hurst_exponent: got 1.5, need a value above 0 and below 1",
         ),
-        (lambda: Oil("mobilgear-shc-xmp-32"), "Oil: name: got 'mobilgear-shc-xmp-32', need one of"),
-        (
-            lambda: Oil(),
-            "Oil: got neither, need either the name of a lubricant record or",
-        ),
-        (lambda: Oil(OIL, viscosity=TWO), "Oil: got both"),
-        (lambda: Oil(OIL, base="ester"), "Oil: base: got 'ester' together with a"),
-        (
-            lambda: Oil(viscosity={"40 degC": "30 mm^2/s", "100 degC": "300 mm^2/s"}),
-            "Oil: viscosity: got 300 mm2/s at 100 degC",
-        ),
-        (lambda: Oil(viscosity={"40 degC": "30 mm^2/s"}), "got fewer than two temperatures"),
-        (
-            lambda: Oil(viscosity={"40 degC": "30", "80 degC": "9 mm^2/s"}),
-            "got '30', need a number",
-        ),
-        (lambda: Oil(viscosity="30 mm^2/s"), "got '30 mm^2/s', need viscosities by temperature"),
-        (lambda: Oil(viscosity=30.0), "viscosity: got 30.0, need viscosities by temperature"),
-        (lambda: Oil(viscosity=TWO, base="olive"), "Oil: base: got 'olive', need one of mineral"),
-        (lambda: Oil(viscosity=TWO, base=["PAO"]), "Oil: base: got ['PAO'], need one of mineral"),
         (
             lambda: Rollers("50 mm", roughness="0.2 um"),
             "need a lube.stages.Roughness; did you mean rms_roughness",
@@ -207,24 +147,6 @@ def test_both_show_themselves_and_travel_between_processes():
             "trace: bands: unknown argument, only contact_probability, duty and the required_",
         ),
         (lambda: Rollers(rms_roughness="1 um"), "Rollers: missing a required argument: 'radius'"),
-        (lambda: Oil(OIL, temp_range=1), "Oil: temp_range: unknown argument, did you mean"),
-        (
-            lambda: Oil(OIL, temperature_range=["120 degC", "20 degC"]),
-            "Oil: temperature_range: got 120 to 20 degC, need the lowest first",
-        ),
-        (
-            lambda: Oil(OIL, temperature_range="120 degC"),
-            "Oil: temperature_range: got '120 degC', need the lowest and the highest",
-        ),
-        (
-            lambda: Oil(OIL, temperature_range=120),
-            "temperature_range: got 120, need a number with its unit",
-        ),
-        (
-            lambda: Oil(OIL).properties("110 degC"),
-            f"{OIL}: got 110 degC, need 40 to 100 degC, or a wider temperature_range of the oil",
-        ),
-        (lambda: Oil(OIL).properties("20 degC"), f"{OIL}: got 20 degC, need 40 to 100 degC"),
     ],
 )
 def test_a_mistake_is_one_line(make, message):

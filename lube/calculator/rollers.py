@@ -1,25 +1,15 @@
-"""Rollers and oils, from numbers with units or from a lubricant record."""
+"""The rollers of an answer, from numbers with units."""
 
-import functools
 import inspect
 import math
-from collections.abc import Callable, Mapping
-from pathlib import Path
-from typing import TypeVar
+from collections.abc import Mapping
 
-import numpy as np
-import xarray as xr
-
-from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import amount
+from lube.calculator.arguments import amount, checked
 from lube.contact.rough_pair import RoughPair
-from lube.errors import LubeError, RecordError, StudyError, located, right_one, shown
+from lube.errors import StudyError, shown
 from lube.grid.gap import Gap
-from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.study.field_types import validate
 from lube.study.line_spec import band_in_words, line_spec
-from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
-from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import (
     AUTOMATIC_WAVELENGTH,
     INSULATOR,
@@ -31,14 +21,9 @@ from lube.study.rollers import (
     Roughness,
     grid_points,
 )
-from lube.study.viscosity_checks import check_points
-from lube.study.viscosity_points import read_viscosity_csv
-from lube.threads import progress_bars
-from lube.types import Amount, File
 from lube.units import parse_quantity
 
 _HEIGHT_STEP = "1 pm"
-_SOURCE = "assumed: given in Python"
 _MODELS = (
     ("radius", "young_modulus", "poisson_ratio"),
     ("rms_roughness", "ra_roughness", "topography"),
@@ -50,49 +35,6 @@ _MODELS = (
 """Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
 _LENGTHS = ("longest_wavelength", "shortest_wavelength")
 _LAYER = ("critical_thickness", "shear_strength")
-_TAKEN_BY = {
-    "bands": "only contact_probability, duty and the required_ functions take it",
-    "contact_model": "only contact_probability, duty, trace, plan and the required_ functions do",
-    "load_sharing": "only contact_probability and duty take it: the oil carries the whole load",
-    "slide_to_roll_ratio": "only film, indicators, contact_probability, trace and plan take it; "
-    "duty: both speeds",
-}
-"""Choices that some functions lack, and which have them."""
-_Function = TypeVar("_Function", bound=Callable)
-
-
-def with_parts(function: _Function) -> _Function:
-    """Make a function refuse unknown arguments, and `rollers` and `oil` of other types.
-
-    If it takes long, it shows its progress.
-    """
-    signature, owner = inspect.signature(function), function.__qualname__.split(".")[0]
-
-    @functools.wraps(function)
-    def checked(*args, **kwargs):
-        for name in kwargs.keys() - signature.parameters.keys():
-            raise StudyError(f"{owner}: {name}: unknown argument, {_meant(name, signature)}")
-        try:
-            given = signature.bind(*args, **kwargs).arguments
-        except TypeError as error:
-            raise StudyError(f"{owner}: {error}") from None
-        for name, kind in (("rollers", Rollers), ("oil", Oil)):
-            if name in given and not isinstance(given[name], kind):
-                needed = f"need lube.{kind.__name__}(...)"
-                raise StudyError(f"{name}: got {shown(given[name])}, {needed}")
-        with progress_bars():
-            return function(*args, **kwargs)
-
-    return checked
-
-
-def _meant(name, signature):
-    """Name the arguments that were probably meant: those that contain the name, or the nearest."""
-    if name in _TAKEN_BY:
-        return _TAKEN_BY[name]
-    names = [each for each in signature.parameters if each != "self"]
-    longer = [each for each in names if name in each]
-    return f"did you mean {' or '.join(longer)}?" if longer else right_one(name, names)
 
 
 class Rollers:
@@ -179,7 +121,7 @@ class Rollers:
     '0.283 um'
     """
 
-    @with_parts
+    @checked
     def __init__(
         self,
         radius: str,
@@ -282,171 +224,3 @@ def _metres(name, length):
         needed = "need a length: only a study counts in points of its grid"
         raise StudyError(f"{name}: got {shown(length)}, {needed}")
     return f"{amount(name, length, 'm', above=0.0).item()!r} m"
-
-
-class Oil:
-    """An oil, from a lubricant record or from numbers.
-
-    Parameters
-    ----------
-    name : str or Path, optional
-        Name of a shipped lubricant record (`lube.stages.shipped_records`), or path of a YAML file.
-    viscosity : dict or str, optional
-        Without a record: viscosities, kinematic or dynamic, at two temperatures or more, such as
-        ``{"40 degC": "320 mm^2/s", "100 degC": "38 mm^2/s"}``; or the path of a CSV file with the
-        columns ``temperature [degC]`` and ``kinematic_viscosity [mm^2/s]``.
-    density : str, optional
-        Without a record: at 15 degC, by default 870 kg/m^3.
-    base : str, optional
-        Without a record: base oil, for the pressure-viscosity coefficient by Gold's form:
-        ``mineral`` (by default), ``polyalphaolefin`` or ``PAO``, ``ester``, ``polyglycol`` or
-        ``PAG``.
-    pressure_viscosity : str, optional
-        Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, the slope at
-        atmospheric pressure, in place of the base oil's.
-    thermal_conductivity : str, optional
-        Without a record: for the heating at the inlet, by default 0.14 W/(m K), as of mineral oils.
-    temperature_range : sequence of str or tuple, optional
-        Lowest and highest temperature at which the oil may be used, such as
-        ``["20 degC", "120 degC"]``; by default those of its data. Beyond the data the viscosity is
-        extrapolated by the oil's viscosity law.
-
-    Attributes
-    ----------
-    record : LubricantRecord
-        The lubricant record.
-
-    Raises
-    ------
-    RecordError
-        Which argument, what came, what is needed.
-
-    Examples
-    --------
-    >>> oil = Oil(viscosity={"40 degC": "320 mm^2/s", "100 degC": "38 mm^2/s"}, base="mineral")
-    >>> f"{oil.properties('60 degC').dynamic_viscosity.item():.0f} mPa s"
-    '114 mPa s'
-    """
-
-    @with_parts
-    def __init__(
-        self,
-        name: File | None = None,
-        *,
-        viscosity: Mapping[str, str] | File | None = None,
-        density: str | None = None,
-        base: str | None = None,
-        pressure_viscosity: str | None = None,
-        thermal_conductivity: str | None = None,
-        temperature_range: Amount | None = None,
-    ) -> None:
-        if (name is None) == (viscosity is None):
-            came = "neither" if name is None else "both"
-            needed = "need either the name of a lubricant record or viscosity={...}"
-            raise RecordError(f"Oil: got {came}, {needed}")
-        own = {
-            "density": density,
-            "base": base,
-            "pressure_viscosity": pressure_viscosity,
-            "thermal_conductivity": thermal_conductivity,
-        }
-        if name is None:
-            self.record = _record(viscosity, **own)
-        else:
-            needed = "together with a lubricant record, which sets it, need only one of the two"
-            for key, value in own.items():
-                if value is not None:
-                    raise RecordError(f"Oil: {key}: got {shown(value)} {needed}")
-            with located("Oil: name"):
-                self.record = load_record(name)
-        if temperature_range is not None:
-            levels = amount("temperature_range", temperature_range, "degC").values.ravel().tolist()
-            if len(levels) != 2:
-                came = f"got {shown(temperature_range)}"
-                raise RecordError(
-                    f"Oil: temperature_range: {came}, need the lowest and the highest"
-                )
-            ends = {"lowest": f"{levels[0]!r} degC", "highest": f"{levels[-1]!r} degC"}
-            ends["source"] = _SOURCE
-            valid = validate(TemperatureRange, ends, "Oil: temperature_range", RecordError)
-            self.record = self.record.model_copy(update={"temperature_range": valid})
-
-    def properties(self, temperature: Amount) -> Answer:
-        """Viscosity, density and pressure-viscosity coefficient at some temperatures.
-
-        Parameters
-        ----------
-        temperature : str, sequence of str or tuple
-            Such as ``"60 degC"`` or ``(range(40, 101, 10), "degC")``.
-
-        Returns
-        -------
-        Answer
-            In customary units, over temperature if there are several.
-
-        Raises
-        ------
-        RangeError
-            If the lubricant record is not valid at a temperature.
-        """
-        degrees = amount("temperature", temperature, "degC")
-        table = self.at(degrees)
-        names = [name for name, values in table.items() if values.dims == degrees.dims]
-        return described(table[names])
-
-    def at(self, temperature: xr.DataArray) -> xr.Dataset:
-        """Properties in SI units, at temperatures in degC over any dimensions."""
-        table = lubricant_table([self.record], np.unique(temperature.values))
-        return table.isel(lubricant=0).sel(temperature=temperature).drop_attrs()
-
-    def __repr__(self) -> str:
-        lowest, highest = self.record.valid_temperatures
-        return f"<Oil: {self.record.title}, valid from {lowest:g} to {highest:g} degC>"
-
-
-def _record(viscosity, density, base, pressure_viscosity, thermal_conductivity):
-    """Lubricant record for given viscosities."""
-    base = base_oil(base or "mineral")
-    if base not in list(GOLD_BASES):
-        raise RecordError(f"Oil: base: got {shown(base)}, need one of {', '.join(GOLD_BASES)}")
-    alpha = {"source": _SOURCE, "gold_base": base}
-    if pressure_viscosity is not None:
-        alpha = {"source": _SOURCE, "value": pressure_viscosity, "definition": FORMULA_DEFINITION}
-    density = {"at_15_degC": density or "870 kg/m^3", "thermal_coefficient": "6.4e-4 1/K"}
-    content = {
-        "name": "oil",
-        "title": "Oil of given viscosity",
-        "viscosity": {"source": _SOURCE, "points": _points(viscosity)},
-        "density": density | {"source": _SOURCE},
-        "pressure_viscosity": alpha,
-        "thermal_conductivity": {
-            "source": _SOURCE,
-            "value": thermal_conductivity or "0.14 W/m/K",
-        },
-    }
-    record = validate(LubricantRecord, content, "Oil", RecordError)
-    check_points(record, "Oil")
-    return record
-
-
-def _points(viscosity):
-    # A text may also be a viscosity without its temperature.
-    if isinstance(viscosity, str | Path):
-        path = Path(viscosity)
-        if path.suffix == ".csv" or path.is_file():
-            return read_viscosity_csv(viscosity)
-    if not isinstance(viscosity, Mapping):
-        raise RecordError(
-            f"Oil: viscosity: got {shown(viscosity)}, need viscosities by temperature, such as "
-            "{'40 degC': '320 mm^2/s', '100 degC': '38 mm^2/s'}, or a CSV file"
-        )
-    return [{"temperature": level, _kind(value): value} for level, value in viscosity.items()]
-
-
-def _kind(viscosity):
-    """Whether a viscosity is kinematic or dynamic, by its unit."""
-    try:
-        parse_quantity(viscosity, "Pa*s")
-    except LubeError:
-        return "kinematic_viscosity"
-    return "dynamic_viscosity"
