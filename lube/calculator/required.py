@@ -127,7 +127,7 @@ def required_viscosity(
         As in `lube.contact_probability`, one value of each. The pressure-viscosity coefficient and
         the density are those of the oil at that temperature.
     inlet_shear_heating, inlet_meniscus
-        As in `lube.film`, in pure rolling. Computed heating takes some ten seconds more.
+        As in `lube.film`, in pure rolling. Computed heating takes some seconds more.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -196,7 +196,7 @@ def required_speed(
     rollers, oil, force, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
     inlet_shear_heating, inlet_meniscus
-        As in `lube.film`, in pure rolling. Computed heating takes some ten seconds more.
+        As in `lube.film`, in pure rolling. Computed heating takes some seconds more.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -253,7 +253,7 @@ def required_temperature(
     rollers, oil, force, speed, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
     inlet_shear_heating, inlet_meniscus
-        As in `lube.film`, in pure rolling. Computed heating takes some ten seconds more.
+        As in `lube.film`, in pure rolling. Computed heating takes some seconds more.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands

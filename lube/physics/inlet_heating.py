@@ -210,8 +210,10 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
 
     arguments = np.broadcast_arrays(*(np.asarray(each, float) for each in (loading, slip, film)))
     scale = np.exp(-inlet_integral(np.log(arguments[2]), arguments[2], np.inf)[0])
-    # Up to a little above 1, which is the root without loading.
-    found = find_root(_pressure_missing, (np.log(1e-4), 0.01), args=(*arguments, scale))
+    # Up to a little above 1, which is the root without loading. The error of the integration is
+    # larger than this tolerance.
+    bounds, tolerances = (np.log(1e-4), 0.01), {"xatol": 1e-12}
+    found = find_root(_pressure_missing, bounds, args=(*arguments, scale), tolerances=tolerances)
     return np.minimum(np.exp(found.x), 1.0)[()]
 
 
@@ -220,21 +222,27 @@ def _pressure_missing(log_factor: Array, loading: Array, slip: Array, film: Arra
     heated = film * np.exp(log_factor)
     rolling, sliding = 0.5 * loading**0.85, 0.2 * (loading * slip * slip) ** 0.9
 
-    def rate(logarithm, state):
-        distance = size * np.exp(logarithm)
+    size = 1.0 + np.sqrt(film)
+
+    def at(position):
+        """Terms of the rate that do not depend on y."""
+        distance = size * np.exp(position)
         gap = hertz_gap(1.0 + distance)
         total = heated + gap
-        height = np.abs(state)
-        heat = height**9 + rolling * (gap / total) ** 1.7 * np.sqrt(height) + sliding
-        return 0.1 * scale * distance * gap / total**3 / np.maximum(heat, 1e-300)
+        return 0.1 * scale * distance * gap / total**3, rolling * (gap / total) ** 1.7
 
-    size = 1.0 + np.sqrt(film)
-    places, step = np.linspace(np.log(_REACH), np.log(_NEAREST), _STEPS + 1, retstep=True)
-    state = np.ones_like(film)
-    for place in places[:-1]:  # Runge and Kutta's fourth order
-        first = rate(place, state)
-        second = rate(place + 0.5 * step, state + 0.5 * step * first)
-        third = rate(place + 0.5 * step, state + 0.5 * step * second)
-        fourth = rate(place + step, state + step * third)
-        state = state + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
-    return state
+    def rate(terms, y):
+        height, (driving, heating) = np.abs(y), terms
+        heat = height**9 + heating * np.sqrt(height) + sliding
+        return driving / np.maximum(heat, 1e-300)
+
+    positions, half = np.linspace(np.log(_REACH), np.log(_NEAREST), 2 * _STEPS + 1, retstep=True)
+    y, start = np.ones_like(film), at(positions[0])
+    for middle, end in zip(map(at, positions[1::2]), map(at, positions[2::2]), strict=True):
+        # Runge and Kutta's fourth order.
+        first = rate(start, y)
+        second = rate(middle, y + half * first)
+        third = rate(middle, y + half * second)
+        fourth = rate(end, y + 2.0 * half * third)
+        y, start = y + half / 3.0 * (first + 2.0 * second + 2.0 * third + fourth), end
+    return y
