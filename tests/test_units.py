@@ -76,8 +76,10 @@ def test_an_inverse_time_counts_turns_where_a_speed_of_rotation_is_needed():
         assert parse_quantity(f"2 {units}", "rpm") == pytest.approx(120.0, rel=1e-15)
     for units, in_a_turn in ANGLES.items():
         assert parse_quantity(f"{2 * in_a_turn} {units}", "rpm") == pytest.approx(120.0, rel=1e-15)
+        assert parse_quantity(f"{2 * in_a_turn} {units}", "Hz") == pytest.approx(2.0, rel=1e-15)
     for units in RADIANS:
         assert parse_quantity(f"{math.pi} {units}", "rpm") == pytest.approx(30.0, rel=1e-15)
+        assert parse_quantity(f"{math.pi} {units}", "Hz") == pytest.approx(0.5, rel=1e-15)
     for units in ["1/mm", "min", "U", "m/s", "1/min^2", "min-11", "Umin", "/"]:
         assert repr(units) in refusal(parse_quantity, f"2 {units}", "rpm")
 
