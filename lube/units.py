@@ -17,9 +17,8 @@ from lube.errors import LubeError, shown
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _QUANTITY = re.compile(rf"((?>{_NUMBER})(?:\s*/\s*\d+)?)\s*([^\s,;].*)?")
 
-# For speeds of rotation. Pint treats an angle as a pure number, so 100 1/min would be 15.9 rpm;
-# but a rotation given as 1/min or in hertz counts turns.
-_ANGLE = re.compile("rpm|turn|revolution|cycle|rad|deg|arc")
+# For speeds of rotation and frequencies.
+_TURNS = {"rpm": "rpm", "Hz": "turn/s"}
 _TURN = re.compile(r"(?<![A-Za-z])(?:U|r|rev)(?![A-Za-z])")
 _INVERSE = re.compile(r"(?<=[A-Za-z])-1(?!\d)")
 
@@ -87,9 +86,9 @@ def parse_number(value: object) -> float:
 def convert(number: float | np.ndarray, units: str, target: str) -> float | np.ndarray:
     """Convert a number, or an array, between two units of the same dimension.
 
-    Two targets are special. ``rpm`` is a speed of rotation: ``1/min`` and ``Hz``
-    count turns, unless the unit names another angle, such as ``rad/s``. ``K`` is a difference of
-    temperatures: 1 degC is 1 K.
+    Three targets are special. ``rpm`` and ``Hz`` are a speed of rotation and a frequency: ``1/min``
+    and ``Hz`` count turns, unless the unit names another angle, such as ``rad/s``. ``K`` is a
+    difference of temperatures: 1 degC is 1 K.
 
     Parameters
     ----------
@@ -117,10 +116,11 @@ def convert(number: float | np.ndarray, units: str, target: str) -> float | np.n
         return number
     registry = _registry()
     try:
-        value = registry.Quantity(number, _in_turns(units) if target == "rpm" else units)
+        turns = _TURNS.get(target)
+        value = registry.Quantity(number, _in_turns(units, registry) if turns else units)
         if target == "K":
             value = value - registry.Quantity(0.0, units)
-        return value.to(target).magnitude
+        return value.to(turns or target).magnitude
     except Exception as error:  # pint's parser raises errors of many kinds
         unknown = "Undefined" in type(error).__name__
         reason = "unknown unit" if unknown else "wrong dimension or unit"
@@ -142,10 +142,14 @@ def converts(units: str, target: str) -> bool:
     return True
 
 
-def _in_turns(units):
-    """Write a speed of rotation such as ``1/min``, ``Hz`` or ``U/min`` in turns, as pint needs."""
-    units = _INVERSE.sub("^-1", _TURN.sub("turn", units))
-    return units if _ANGLE.search(units) else f"turn {units}"
+def _in_turns(units, registry):
+    """Read a unit such as ``rad/s``; ``1/min`` and ``Hz`` count turns.
+
+    Pint treats an angle as a pure number, so 100 1/min would be 15.9 rpm.
+    """
+    units = registry.Unit("turn " + _INVERSE.sub("^-1", _TURN.sub("turn", units)))
+    is_angle_twice = "radian ** 2" in f"{registry.get_root_units(units)[1]}"
+    return units / registry.turn if is_angle_twice else units
 
 
 def usual_spelling(units: str) -> str:

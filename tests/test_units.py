@@ -65,6 +65,7 @@ def test_temperatures_are_points_on_a_scale_in_degrees_and_differences_in_kelvin
 A_MINUTE = ["1/min", "min^-1", "min-1", "min**-1", "min⁻¹", "/min", "/ min", "U/min", "r/min"]
 A_MINUTE += ["rev/min", "rpm", "U min^-1", "rev min-1", "turn/min", "revolution/minute"]
 A_SECOND = ["1/s", "1 / s", "/s", "s^-1", "s-1", "Hz", "hertz", "U/s", "turn/s"]
+ANGLES = {"rps": 1, "circle/s": 1, "deg/s": 360, "°/s": 360, "gon/s": 400}
 RADIANS = ["rad/s", "rad s^-1", "rad s-1", "rad*Hz"]
 
 
@@ -73,8 +74,12 @@ def test_an_inverse_time_counts_turns_where_a_speed_of_rotation_is_needed():
         assert parse_quantity(f"100 {units}", "rpm") == pytest.approx(100.0, rel=1e-15)
     for units in A_SECOND:
         assert parse_quantity(f"2 {units}", "rpm") == pytest.approx(120.0, rel=1e-15)
+    for units, in_a_turn in ANGLES.items():
+        assert parse_quantity(f"{2 * in_a_turn} {units}", "rpm") == pytest.approx(120.0, rel=1e-15)
+        assert parse_quantity(f"{2 * in_a_turn} {units}", "Hz") == pytest.approx(2.0, rel=1e-15)
     for units in RADIANS:
         assert parse_quantity(f"{math.pi} {units}", "rpm") == pytest.approx(30.0, rel=1e-15)
+        assert parse_quantity(f"{math.pi} {units}", "Hz") == pytest.approx(0.5, rel=1e-15)
     for units in ["1/mm", "min", "U", "m/s", "1/min^2", "min-11", "Umin", "/"]:
         assert repr(units) in refusal(parse_quantity, f"2 {units}", "rpm")
 

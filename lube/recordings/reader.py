@@ -19,7 +19,7 @@ from lube.units import parse_electrical, parse_number
 
 _KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
 
-_FIRST_STEPS = 1000  # time steps whose median is the sampling interval
+_FIRST_STEPS = 1000  # time steps whose mean is the sampling interval
 _AGREEMENT = 0.01  # relative; the given interval may differ from the file's by rounding
 
 
@@ -190,14 +190,15 @@ def _offset(offset, quantity):
 
 
 def _interval_of(path, signal, times):
-    """Median of the first positive time steps, s."""
+    """Mean of the first time steps, s, but for gaps; written times may be rounded."""
     if times.size == 1:
         raise DataError(f"{path}: got a single sample, need two or more for a sampling interval")
     steps = np.diff(times[: _FIRST_STEPS + 1])
     rising = steps[(steps > 0.0) & np.isfinite(steps)]
     if not rising.size:
         raise DataError(f"{path}: {signal.where(1)}: time does not rise, need rising times")
-    return float(np.median(rising))
+    median = np.median(rising)
+    return float(rising[np.abs(rising - median) < 0.5 * median].mean())
 
 
 def _agreed_interval(path, stated, given):

@@ -191,8 +191,8 @@ def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array
     """
     means = values.mean(axis=0), reference.mean(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        _, lower, upper = mean_interval(1.0 + values / means[0] - reference / means[1])
-        ratio, half = means[0] / means[1], 0.5 * (upper - lower)  # of the logarithm
+        _, _, upper = mean_interval(1.0 + values / means[0] - reference / means[1])
+        ratio, half = means[0] / means[1], upper - 1.0  # of the logarithm
     return ratio, ratio * np.exp(-half), ratio * np.exp(half)
 
 

@@ -129,6 +129,16 @@ def test_column_names_after_what_looks_like_some_are_found_by_the_number_of_line
     np.testing.assert_allclose(read(path, skip=2), VOLTS, rtol=1e-8)
 
 
+@pytest.mark.parametrize("rate", [32_768.0, 44_100.0, 51_200.0])
+def test_the_sampling_interval_is_exact_where_times_are_rounded(tmp_path, rate):
+    times = np.round(np.arange(3_000) / rate, 6)
+    path = write_csv(tmp_path / "r.csv", [times, np.zeros(times.size)], "time [s],voltage [V]")
+    for given_interval in (None, 1.0 / rate):
+        recording = open_recording(path, given_interval)
+        assert recording.sampling_interval == pytest.approx(1.0 / rate, rel=1e-4)
+        assert sum(piece.size for piece in recording.pieces()) == times.size
+
+
 def test_a_single_column_needs_the_sampling_interval(tmp_path):
     path = write_csv(tmp_path / "r.csv", [VOLTS], "voltage [V]", decimal=",")
     assert open_recording(path, INTERVAL).sampling_interval == INTERVAL

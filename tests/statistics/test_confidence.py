@@ -102,6 +102,15 @@ def test_the_limit_of_breakthroughs_never_sampled_holds_in_95_of_100_cases(share
     assert np.all(limit[seen > 0] == contact * seen[seen > 0] / sampled)
 
 
+def test_interval_of_a_ratio_follows_from_the_error_of_its_logarithm():
+    values, reference = np.array([[0.5], [0.1], [0.0]]), np.array([[0.0], [0.1], [0.5]])
+    error = scipy.stats.sem(values / 0.2 - reference / 0.2)[0]
+    half = scipy.stats.t.ppf(0.975, 2) * error
+    assert half > 1.0
+    _, lower, upper = ratio_interval(values, reference)
+    assert np.log([lower, upper]).ravel() == pytest.approx([-half, half])
+
+
 def test_interval_of_a_ratio_knows_that_both_see_the_same_lines():
     random = np.random.default_rng(1)
     lines = random.lognormal(size=(400, 40, 1))
