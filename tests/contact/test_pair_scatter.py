@@ -96,7 +96,9 @@ def test_new_alignments_leave_the_scatter_that_theory_says(make_spec):
     assert np.all((np.array(ratios) > 0.65) & (np.array(ratios) < 1.3))
 
 
-@pytest.mark.parametrize("slip", [0.3, -1.5, 2.0])
+@pytest.mark.parametrize(
+    "slip", [-1.5, *(pytest.param(slip, marks=pytest.mark.slow) for slip in (0.3, 2.0))]
+)
 def test_turns_with_slip_scatter_as_theory_says(make_spec, slip):
     """On whole rollers that are moved step by step; also in shorter records."""
     spec = make_spec(50_000, **LINES)

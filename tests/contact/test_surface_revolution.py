@@ -39,7 +39,15 @@ def make_small(study):
     return make
 
 
-@pytest.mark.parametrize(("gap", "lay"), [(PLAIN, {}), (PLAIN, LAY), (SHAPED, {}), (ANSWERED, {})])
+@pytest.mark.parametrize(
+    ("gap", "lay"),
+    [
+        (PLAIN, {}),
+        pytest.param(PLAIN, LAY, marks=pytest.mark.slow),
+        (SHAPED, {}),
+        pytest.param(ANSWERED, {}, marks=pytest.mark.slow),
+    ],
+)
 def test_pairs_of_rollers_touch_as_often_as_sampled_surfaces(study, make_small, layer, gap, lay):
     spec = make_small(**lay)
     film = films(study, spec, [2.6, 3.2], gap=gap)

@@ -154,7 +154,7 @@ def test_where_a_shape_is_not_known_contact_is_not_either(shaped_film, coarse, w
     np.testing.assert_array_equal(found[:, 0], whole.reshape(2, 2, 2, 4)[:, 0])
 
 
-@pytest.mark.parametrize("shape", ["flat", "computed"])
+@pytest.mark.parametrize("shape", [pytest.param("flat", marks=pytest.mark.slow), "computed"])
 def test_where_the_oil_answers_sampled_contact_is_as_often_as_counted(
     shape, shaped_film, make_spec, weak
 ):

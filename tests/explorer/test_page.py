@@ -337,14 +337,15 @@ def test_a_record_is_told_with_what_the_chosen_contact_model_predicts(visit, exp
     )
     by_both = xr.concat([by_line[names], by_surface[names]], models)
     by_both = by_line.drop_vars(names).merge(by_both)
+    of_lines, of_rollers = {"line": "lines: "}, {"surface": "rollers: 90\u00a0% to 90\u00a0%"}
     for comparison, expected in (
-        (by_both, "rollers: 90\u00a0% to 90\u00a0%"),
-        (by_line, "lines: "),
+        (by_both, of_lines | of_rollers),
+        (by_line, {"surface": "lines: "}),
     ):
         path = tmp_path / "both.html"
         page = explorer_page(study | {"comparison": comparison}, BAND)
         path.write_text(page, encoding="utf-8")
-        for model, predicted in (("line", "lines: "), ("surface", expected)):
+        for model, predicted in expected.items():
             page = visit(path, f"#force=1600&temperature=80&contact_model={model}")
             assert f"predicted for one pair of {predicted}" in page.inner_text("#records")
 

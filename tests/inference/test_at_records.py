@@ -265,7 +265,7 @@ def unequal(study):
         # Four turns of the first roller are five of the second: all four alignments.
         pytest.param(unequal, 0.0, 4, id="unequal rollers"),
         # A turn shows a third of the second line, which scatters far more than the whole.
-        pytest.param(lambda study: study, 1.0, 6, id="much slip"),
+        pytest.param(lambda study: study, 1.0, 6, id="much slip", marks=pytest.mark.slow),
     ],
 )
 def test_the_scatter_of_a_long_record_is_that_of_a_literal_run(busy, change, slip, turns):

@@ -74,7 +74,9 @@ def test_runs_do_not_depend_on_batches_or_the_number_of_threads(study, direct):
             np.testing.assert_array_equal(six_digits(found[name].values), expected[name])
 
 
-@pytest.mark.parametrize("name", ["critical_thickness", "film_formula"])
+@pytest.mark.parametrize(
+    "name", ["critical_thickness", pytest.param("film_formula", marks=pytest.mark.slow)]
+)
 def test_a_factor_alone_explains_all_but_the_random_numbers(study, few, name):
     """Also one with which the films do not vary continuously."""
     factor = Uncertainty.model_validate({name: SMALL[name]})

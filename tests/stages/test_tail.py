@@ -257,8 +257,17 @@ def runs_in(lines, starts, film, window, factor, margin=60, answers=()):
             yield set(points[begin:end].tolist()), bool(breaks)
 
 
-@pytest.mark.parametrize("gap", [Gap(), Gap("computed"), Gap("computed", "computed")])
-@pytest.mark.parametrize("ratio", [0.0, 0.4])
+@pytest.mark.parametrize(
+    ("ratio", "gap"),
+    [
+        (0.0, Gap()),
+        pytest.param(0.0, Gap("computed"), marks=pytest.mark.slow),
+        pytest.param(0.0, Gap("computed", "computed"), marks=pytest.mark.slow),
+        pytest.param(0.4, Gap(), marks=pytest.mark.slow),
+        pytest.param(0.4, Gap("computed"), marks=pytest.mark.slow),
+        (0.4, Gap("computed", "computed")),
+    ],
+)
 def test_breakthroughs_are_as_many_as_counted_step_by_step(
     coarse, few, study, ratio, gap, monkeypatch
 ):

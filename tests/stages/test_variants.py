@@ -83,6 +83,7 @@ def test_films_are_those_of_the_film_stage(found, files, few):
     np.testing.assert_allclose(ratio, 2.922 / 2.992, rtol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few_surfaces")
 def test_films_that_share_the_load_do_so_by_their_shape_and_heated(few):
     grid = few.operating_grid.model_copy(update={"force": (100.0,), "temperature": (80.0,)})
