@@ -20,7 +20,12 @@ from lube.study.line_spec import LineSpec
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import BoundaryLayer, Roller
 from lube.study.study import Study
-from lube.study.uncertainty import Factor, check_uncertainty, deviating_lines
+from lube.study.uncertainty import (
+    Factor,
+    check_uncertainty,
+    deviating_lines,
+    height_in_band,
+)
 from lube.types import Array
 
 OIL = (
@@ -219,8 +224,9 @@ class Deviating:
 
     def rms_roughness(self, values: dict):
         """Rms height of both lines together, m."""
-        names = "first_rms_roughness", "second_rms_roughness"
-        each = zip(names, self.study.line_spec.rms_height, strict=True)
+        names, lines = ("first_rms_roughness", "second_rms_roughness"), self.study.line_spec.lines
+        heights = (line.rms_height * height_in_band(line, values) for line in lines)
+        each = zip(names, heights, strict=True)
         rms = np.sqrt(sum((rms * (1.0 + values.get(name, 0.0))) ** 2 for name, rms in each))
         return rms * (1.0 + values.get("rms_roughness", 0.0))
 

@@ -3,8 +3,9 @@
 Under flat films the probability depends on few dimensionless groups: the lambda ratio, the contact
 width over the longest wavelength, the Hurst exponent, the width of the band and the strength of the
 layer. It also depends on the first roller's part of the roughness if the rollers differ in more
-than its height, and on Moes' numbers with a shape or an answer of the oil. Its normal quantile is
-nearly linear in the lambda ratio, so one function of these groups serves all operating points.
+than its height, on the longest wavelength itself if there is a roll-off, and on Moes' numbers with
+a shape or an answer of the oil. Its normal quantile is nearly linear in the lambda ratio, so one
+function of these groups serves all operating points.
 """
 
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from scipy.interpolate import RBFInterpolator
 
 from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating
+from lube.study.uncertainty import height_in_band
 from lube.types import Array
 
 SMOOTHING = 0.1
@@ -69,9 +71,12 @@ def groups(
     found = [ratio, np.log(film["contact_half_width"] / longest), np.log(shortest / longest)]
     found += [np.log(strength * shortest ** (2.0 - hurst) * longest**hurst / rms), hurst]
     if not spec.has_like_lines:
-        first = spec.rms_height[0] * (1.0 + values.get("first_rms_roughness", 0.0))
+        first = spec.rms_height[0] * height_in_band(spec.lines[0], values)
+        first = first * (1.0 + values.get("first_rms_roughness", 0.0))
         first = first * (1.0 + values.get("rms_roughness", 0.0))
         found += [(first / rms) ** 2]
+    if any(line.has_roll_off for line in spec.lines):
+        found += [np.log(longest)]
     if not gap.is_plain:
         found += [np.log(each) for each in moes]
     each = xr.broadcast(*(xr.DataArray(one, name="groups") for one in found))

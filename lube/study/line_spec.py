@@ -5,6 +5,7 @@ import hashlib
 import math
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field, PlainSerializer
 
 from lube.errors import StudyError, located
@@ -43,6 +44,9 @@ class RoughLine(StrictModel):
         Measured spectrum: wave vectors, rad/m, and densities, m^3, between which it is a power law.
     heights : bytes, optional
         Measured heights of the line itself: `points` numbers int32, in height steps.
+    long_cutoff, short_cutoff : float, optional
+        Longest and shortest of the waves whose rms height was stated, m; by default those of the
+        line.
     isotropic : bool
         Whether the line stands for a surface that is isotropic, apart from its lay; by default it
         does.
@@ -61,6 +65,8 @@ class RoughLine(StrictModel):
     kurtosis: float = 3.0
     spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None = None
     heights: Annotated[bytes, PlainSerializer(_digest)] | None = Field(None, repr=False)
+    long_cutoff: float | None = None
+    short_cutoff: float | None = None
     isotropic: bool = True
     lay_ratio: float = 1.0
     lay_angle: float = 90.0
@@ -74,6 +80,11 @@ class RoughLine(StrictModel):
     def shortest_wavelength(self) -> float:
         """Shortest wavelength of the line, m."""
         return 2.0 * math.pi / self.q_max
+
+    @property
+    def has_roll_off(self) -> bool:
+        """Whether the spectrum of the surface is constant for the longest waves."""
+        return self.q_roll_off != self.q_min
 
     @property
     def follows_rolling(self) -> bool:
@@ -307,8 +318,11 @@ def _rough_line(rollers, roughness, name, rms, spacing, width):
     elif own.hurst_exponent is None:
         raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
     else:
-        rms *= _beyond_cutoffs(own, longest, shortest, key)
-        shape = {"rms_height": rms, "hurst_exponent": own.hurst_exponent} | _lay(own, key)
+        cutoffs = own.long_cutoff, own.short_cutoff
+        _check_cutoffs(cutoffs, longest, shortest, key)
+        beyond = own.hurst_exponent, longest, shortest, cutoffs, own.roll_off_wavelength
+        shape = {"rms_height": rms * beyond_cutoffs(*beyond), "hurst_exponent": own.hurst_exponent}
+        shape |= {"long_cutoff": cutoffs[0], "short_cutoff": cutoffs[1]} | _lay(own, key)
     _check_perimeter(points * spacing, longest * shape.get("lay_ratio", 1.0), shortest, name)
     _check_height_step(shape["rms_height"], roughness.height_step, name, roller)
     return RoughLine(
@@ -340,31 +354,62 @@ def _lay(own, key):
     return {"lay_ratio": own.lay_ratio, "lay_angle": own.lay_angle}
 
 
-def _beyond_cutoffs(own, longest, shortest, key):
+def _check_cutoffs(cutoffs, longest, shortest, key):
+    long_cutoff, short_cutoff = cutoffs[0] or longest, cutoffs[1] or shortest
+    if long_cutoff <= short_cutoff:
+        name = "long_cutoff" if cutoffs[0] else "short_cutoff"
+        raise StudyError(
+            f"{key(name)}: got a height stated for waves of {_length(long_cutoff)} to "
+            f"{_length(short_cutoff)}, need a long cutoff above the short one; by default they are "
+            "the ends of the band"
+        )
+
+
+def beyond_cutoffs(
+    hurst_exponent: Values,
+    longest: Values,
+    shortest: Values,
+    cutoffs: tuple[float | None, float | None],
+    roll_off: float | None,
+) -> Values:
     r"""Ratio of the rms height of all waves of a line to that of the waves within the cutoffs.
 
     Both follow from the integral of :math:`C \propto q^{-2H-1}`, below the roll-off
     :math:`C \propto q`.
+
+    Parameters
+    ----------
+    hurst_exponent : float or array_like
+        Hurst exponent H.
+    longest, shortest : float or array_like
+        Longest and shortest wavelength of the line, m.
+    cutoffs : tuple of float or None
+        Longest and shortest wavelength within the cutoffs, m; by default those of the line.
+    roll_off : float or None
+        Wavelength of the roll-off, m, if there is one.
+
+    Returns
+    -------
+    float or array_like
+        The ratio, exactly 1 without cutoffs.
+
+    Examples
+    --------
+    >>> f"{beyond_cutoffs(0.7, 0.2e-3, 2.5e-6, (0.8e-3, None), None):.3f}"
+    '0.379'
     """
-    if own.long_cutoff is None and own.short_cutoff is None:
+    if cutoffs == (None, None):
         return 1.0
-    stated = own.long_cutoff or longest, own.short_cutoff or shortest
-    if stated[0] <= stated[1]:
-        name = "long_cutoff" if own.long_cutoff else "short_cutoff"
-        raise StudyError(
-            f"{key(name)}: got a height stated for waves of {_length(stated[0])} to "
-            f"{_length(stated[1])}, need a long cutoff above the short one; by default they are "
-            "the ends of the band"
-        )
-    roll_off = own.roll_off_wavelength or max(longest, stated[0])
-    exponent = 2.0 * own.hurst_exponent
+    stated = cutoffs[0] or longest, cutoffs[1] or shortest
+    bend, exponent = roll_off or np.maximum(longest, stated[0]), 2.0 * hurst_exponent
 
     def power(wavelength):  # of all waves from the roll-off to this one
-        ratio = wavelength / roll_off
-        return (1.0 - ratio**exponent) / exponent if ratio < 1.0 else 0.5 * (ratio**-2.0 - 1.0)
+        ratio = wavelength / bend
+        shorter = (1.0 - np.minimum(ratio, 1.0) ** exponent) / exponent
+        return shorter + 0.5 * (np.maximum(ratio, 1.0) ** -2.0 - 1.0)
 
     whole, within = (power(short) - power(long) for long, short in ((longest, shortest), stated))
-    return math.sqrt(whole / within)
+    return np.sqrt(whole / within)
 
 
 def _length(value):

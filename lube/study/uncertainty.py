@@ -16,9 +16,9 @@ from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, located, shown
 from lube.physics.pressure_viscosity import DEFINITIONS
 from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
-from lube.study.line_spec import LineSpec
+from lube.study.line_spec import LineSpec, RoughLine, beyond_cutoffs
 from lube.study.rollers import ROLLERS
-from lube.types import ContactModel, FilmShape, InletHeating
+from lube.types import ContactModel, FilmShape, InletHeating, Values
 from lube.units import parse_number, parse_quantity, with_unit
 
 BEYOND = 5.0
@@ -308,15 +308,45 @@ def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
     lines = []
     for line, name in zip(spec.lines, ROLLERS, strict=True):
         own = 1.0 + values.get(f"{name}_rms_roughness", 0.0)
+        q_min = line.q_min / longer
         update = {
-            "rms_height": line.rms_height * higher * own,
-            "q_min": line.q_min / longer,
-            "q_roll_off": line.q_roll_off / longer,
+            "rms_height": line.rms_height * higher * own * height_in_band(line, values),
+            "q_min": q_min,
+            "q_roll_off": max(line.q_roll_off, q_min) if line.has_roll_off else q_min,
             "q_max": line.q_max / shorter,
             "hurst_exponent": values.get("hurst_exponent", line.hurst_exponent),
         }
         lines.append(line.model_copy(update=update))
     return spec.model_copy(update={"lines": tuple(lines)})
+
+
+def height_in_band(line: RoughLine, values: Mapping[str, Values]) -> Values:
+    """Rms height of a line whose band deviates, over that of the line.
+
+    It is 1 unless the height was stated for waves within cutoffs.
+
+    Parameters
+    ----------
+    line : RoughLine
+        A line of the study.
+    values : dict of str to float or xarray.DataArray
+        As in `deviating_lines`.
+
+    Returns
+    -------
+    float or xarray.DataArray
+        The ratio.
+    """
+    cutoffs = line.long_cutoff, line.short_cutoff
+    roll_off = 2.0 * math.pi / line.q_roll_off if line.has_roll_off else None
+
+    def beyond(values):
+        longest = 2.0 * math.pi / line.q_min * (1.0 + values.get("longest_wavelength", 0.0))
+        shortest = line.shortest_wavelength * (1.0 + values.get("shortest_wavelength", 0.0))
+        hurst = values.get("hurst_exponent", line.hurst_exponent)
+        return beyond_cutoffs(hurst, longest, shortest, cutoffs, roll_off)
+
+    return beyond(values) / beyond({})
 
 
 def check_uncertainty(study) -> None:
@@ -344,9 +374,10 @@ def check_uncertainty(study) -> None:
         lower, upper = uncertain.force.ends
         study.check_window(min(study.operating_grid.force) * (1.0 + lower), "force.range")
         study.check_window(max(study.operating_grid.force) * (1.0 + upper), "force.range")
-    if uncertain.hurst_exponent and not all(line.hurst_exponent for line in spec.lines):
-        came = "got a range for lines with a measured spectrum, on which nothing depends"
-        raise StudyError(f"hurst_exponent: {came}, need none")
+    for name in ("hurst_exponent", "longest_wavelength", "shortest_wavelength"):
+        if getattr(uncertain, name) and not all(line.hurst_exponent for line in spec.lines):
+            came = "got a range for lines whose spectrum and height are measured"
+            raise StudyError(f"{name}: {came}, need none")
     if uncertain.resistivity and not study.conducts:
         raise StudyError("resistivity: got a range for an insulator, need none")
     if uncertain.pressure_viscosity_definition:

@@ -131,6 +131,34 @@ def test_deviating_lines_are_those_of_a_study_with_these_values(study, deviating
     np.testing.assert_allclose(pair_moments(found), pair_moments(expected), rtol=0.03)
 
 
+CUTOFFS = {"longest_wavelength": "0.4 mm", "long_cutoff": "0.8 mm", "short_cutoff": "2.5 um"}
+
+
+@pytest.mark.parametrize("own", [{}, {"roll_off_wavelength": "0.2 mm"}])
+@pytest.mark.parametrize(
+    ("key", "deviation", "by_hand"),
+    [
+        ("longest_wavelength", 0.5, "0.6 mm"),
+        ("shortest_wavelength", 1.0, "20 points"),
+        ("hurst_exponent", 0.8, 0.8),
+    ],
+)
+def test_a_height_stated_within_cutoffs_is_still_that_of_these_waves(own, key, deviation, by_hand):
+    """More waves are higher waves, and the roll-off stays where it is."""
+    studies = [
+        load_study(PAPER, {"name": "cut", "roughness": CUTOFFS | own | changed})
+        for changed in ({}, {key: by_hand})
+    ]
+    deviating, expected = Deviating.of(studies[0]), studies[1].line_spec
+    found = deviating.lines({key: deviation})
+    assert found.rms_height == pytest.approx(expected.rms_height)
+    rms = deviating.rms_roughness(one({key: deviation}))
+    assert rms == pytest.approx(studies[1].rough_rollers.composite_rms_roughness)
+    for name in ("q_min", "q_max", "q_roll_off", "hurst_exponent"):
+        values = [getattr(spec.lines[1], name) for spec in (found, expected)]
+        assert values[0] == pytest.approx(values[1])
+
+
 def test_layers_deviate(study, deviating):
     found = deviating.layer({"critical_thickness": -0.5, "shear_strength": 0.5})
     assert found.critical_thickness == pytest.approx(2.5e-9)

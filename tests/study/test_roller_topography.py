@@ -14,6 +14,7 @@ from studies import CONFIG, PAPER
 
 from lube.errors import LubeError
 from lube.study.study import load_study
+from lube.study.uncertainty import check_uncertainty
 from lube.surfaces.rare_contact import check_stands_for_surface
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import draw_realisation
@@ -247,6 +248,16 @@ def test_what_cannot_be_used_is_refused_in_one_line(study_file, case):
     message = refusal(study_file(topography, roughness=roughness))
     assert "rollers.first" in message
     assert needed in message
+
+
+@pytest.mark.parametrize("name", ["longest_wavelength", "shortest_wavelength"])
+def test_a_measured_spectrum_has_no_other_band(study_file, name):
+    """Its height follows from its band."""
+    ranges = {"hurst_exponent": None, "longest_wavelength": None, "shortest_wavelength": None}
+    ranges[name] = {"range": "-10 % to 0 %", "source": "assumed"}
+    study = load_study(study_file(MAP, uncertainty=ranges))
+    with pytest.raises(LubeError, match=f"{name}: got a range for lines whose spectrum and height"):
+        check_uncertainty(study)
 
 
 def test_a_profile_shorter_than_the_contact_is_refused(study_file, tmp_path):
