@@ -12,7 +12,7 @@ from lube.errors import StudyError, located
 from lube.statistics.sample_size import independent_windows
 from lube.study.field_types import StrictModel
 from lube.study.rollers import AUTOMATIC_WAVELENGTH, ROLLERS, RollerPair, Roughness
-from lube.surfaces.lay import MOST_ALONG_ROLLING, waves_along_rolling
+from lube.surfaces.lay import MOST_ALONG_ROLLING, from_other_side, waves_along_rolling
 from lube.types import Values
 from lube.units import with_unit
 
@@ -315,6 +315,9 @@ def _rough_line(rollers, roughness, name, rms, spacing, width):
             grid = points, spacing, (longest, shortest)
             shape = roller.topography.line(grid, width, roughness.height_step)
             shape["isotropic"] = roller.topography.texture != "along rolling"
+            if name == "second" and "lay_angle" in shape:
+                # Either map is seen from outside its roller, both surfaces from the second roller.
+                shape["lay_angle"] = from_other_side(shape["lay_angle"])
     elif own.hurst_exponent is None:
         raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
     else:

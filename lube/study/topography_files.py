@@ -2,7 +2,8 @@
 
 - CSV: two columns, ``position [mm],height [um]``, evenly spaced; a height that is empty or ``nan``
   is a hole.
-- NetCDF: a variable ``height`` over one or two coordinates, all with ``units``; NaN is a hole.
+- NetCDF: a variable ``height`` over one or two coordinates, all with ``units``; NaN is a hole. The
+  coordinates ``x`` and ``y`` may be in either order.
 - Any other suffix, or a NetCDF file without ``height``: one of the instruments' formats that
   SurfaceTopography recognises by its content, such as X3P, SUR, SDF, PLUX, OPD or VK. Its default
   channel is read, in metres, the first axis is x, and masked points are holes.
@@ -83,7 +84,7 @@ def _read_netcdf(path):
         return None
     if "height" not in dataset:
         return None
-    height = dataset["height"]
+    height = dataset["height"].transpose("x", "y", ..., missing_dims="ignore")
     if height.ndim not in (1, 2) or not all(name in height.coords for name in height.dims):
         raise DataError(f"{path}: got height{height.dims}, need it over one or two coordinates")
     spacing = tuple(

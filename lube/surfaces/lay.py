@@ -165,6 +165,17 @@ def cosine_and_sine(angle: float) -> tuple[float, float]:
     return math.cos(math.radians(angle)), math.sin(math.radians(angle))
 
 
+def from_other_side(angle: float) -> float:
+    """Angle between ridges and rolling, degrees, seen from the other side of the surface.
+
+    Examples
+    --------
+    >>> from_other_side(30.0), from_other_side(90.0)
+    (-30.0, 90.0)
+    """
+    return 90.0 - (90.0 + angle) % 180.0
+
+
 def waves_along_rolling(ratio: float, angle: float) -> float:
     r"""Measure how far the waves of a surface run along rolling.
 

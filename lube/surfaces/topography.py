@@ -139,7 +139,8 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
     '7.1e-07'
     """
     if topography.heights.ndim == 2 and settings.rolling == "y":
-        heights, spacing = topography.heights.T, topography.spacing[::-1]
+        # Turned, not mirrored: rolling is along y, and the rollers' axis against x.
+        heights, spacing = topography.heights[::-1].T, topography.spacing[::-1]
         topography = replace(topography, heights=heights, spacing=spacing)
     _check_points(topography, settings)
     _check_cutoffs(topography, settings)

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 from example_surface import rolled_off_surface
 from refusals import one_line
@@ -164,6 +165,26 @@ def test_no_isotropic_surface_belongs_to_profiles_along_rolling(study_file):
         check_stands_for_surface(
             load_study(study_file(SCAN | {"use": "repeated line"}, MAP)).line_spec
         )
+
+
+def test_rollers_with_the_same_oblique_ridges_cross_in_contact(study_file, tmp_path):
+    """Their maps are seen from opposite sides, as palms that are laid on one another."""
+    points, ridges = 280, np.radians(30.0)
+    q = np.fft.fftfreq(points, 1.0 / points)
+    along = q[:, None] * np.cos(ridges) + q * np.sin(ridges)
+    across = q * np.cos(ridges) - q[:, None] * np.sin(ridges)
+    height = np.maximum(np.hypot(across, 4.0 * along), 8.0) ** -1.8
+    noise = np.random.default_rng(1).standard_normal((points, points))
+    surface = 1e-7 * np.fft.ifft2(height * np.fft.fft2(noise)).real / height.std()
+    axes = {name: (name, 1.5 * np.arange(points), {"units": "um"}) for name in ("x", "y")}
+    found = xr.Dataset({"height": (("x", "y"), surface, {"units": "m"})}, axes)
+    found.to_netcdf(tmp_path / "ridges.nc")
+    ridged = {"file": "ridges.nc", "texture": "lay"}
+    study = load_study(study_file(ridged, contact_model=["surface"]))
+    first, second = study.line_spec.lines
+    assert first.lay_angle == pytest.approx(30.0, abs=2.0)
+    assert second.lay_angle == pytest.approx(-first.lay_angle)
+    assert second.lay_ratio == first.lay_ratio
 
 
 def test_what_was_read_of_a_map_is_plain_data_and_spares_the_jobs_reading_it(study_file):

@@ -46,6 +46,18 @@ def test_netcdf_with_units(tmp_path, shape):
     assert found.spacing == pytest.approx((5e-7,) * len(shape))
 
 
+def test_the_first_direction_of_a_netcdf_map_is_x(tmp_path):
+    axes = {
+        "x": ("x", np.arange(70.0), {"units": "um"}),
+        "y": ("y", 2.0 * np.arange(80), {"units": "um"}),
+    }
+    surface = xr.Dataset({"height": (("x", "y"), HEIGHTS, {"units": "m"})}, axes)
+    surface.transpose("y", "x").to_netcdf(tmp_path / "rows.nc")
+    found = read_topography(tmp_path / "rows.nc")
+    np.testing.assert_array_equal(found.heights, HEIGHTS)
+    assert found.spacing == pytest.approx((1e-6, 2e-6))
+
+
 @pytest.mark.filterwarnings("ignore:Cannot close a netcdf_file:RuntimeWarning")
 @pytest.mark.parametrize(
     ("suffix", "write"),

@@ -113,7 +113,16 @@ def test_rolling_along_y_turns_the_map(rough):
     surface = Topography("a", rough, (1.0, 2.0))
     turned = prepare(surface, Preparation("along rolling", rolling="y"))
     assert turned.heights.shape == (70, 80) and turned.spacing == (2.0, 1.0)
-    np.testing.assert_allclose(turned.heights.T, prepare(surface, ISOTROPIC).heights, atol=1e-12)
+    before = prepare(surface, ISOTROPIC).heights
+    np.testing.assert_allclose(turned.heights, before[::-1].T, atol=1e-12)
+
+
+def test_a_roller_turned_on_the_instrument_shows_the_same_surface(rough):
+    along_x = Topography("a", rough, (1.0, 2.0))
+    along_y = Topography("a", rough.T[::-1], (2.0, 1.0))  # x is now against the roller's axis
+    found = prepare(along_y, Preparation("isotropic", rolling="y"))
+    np.testing.assert_allclose(found.heights, prepare(along_x, ISOTROPIC).heights, atol=1e-12)
+    assert found.spacing == (1.0, 2.0)
 
 
 @pytest.mark.parametrize(
