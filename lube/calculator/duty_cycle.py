@@ -234,7 +234,10 @@ def _columns(points):
         raise DataError("points: got no rows, need one for each duty point")
     columns, labels = {}, {}
     for header, values in frame.items():
-        header, values = f"{header}".strip(), values.tolist()
+        header, missing, values = f"{header}".strip(), values.isna(), values.tolist()
+        if missing.any():
+            row = missing.tolist().index(True) + 1
+            raise DataError(f"points: {header}: missing in row {row}, need it in every row")
         if _is_label(header, values):
             labels[header] = "point", np.array(values, object)
             continue

@@ -327,8 +327,10 @@ def _sampled(pair, surface, strips, certain, sharp, seeds, threads):
     for name in ("breakthroughs_upper", "breakthrough_probability_upper", f"{_RATIO}_upper"):
         of_contact = in_contact[2] if name == f"{_RATIO}_upper" else contacts
         results[name] = breakthrough_limit(results[name], of_contact, sampled)
-    most = results["breakthrough_probability_upper"]
-    results["breakthrough_probability_upper"] = np.minimum(most, 1.0)
+    geometric, breakthrough = _NUMBERS
+    for end in LIMITS:  # no layer breaks without contact, but both are known with an error
+        most = results[f"{geometric}{end}"]
+        results[f"{breakthrough}{end}"] = np.minimum(results[f"{breakthrough}{end}"], most)
     return results
 
 

@@ -126,8 +126,9 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"grid: {points:.3g} points in the shortest wave; the curvature of asperities needs "
         "10": points < 10.0 * (1.0 - 1e-6),
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
-        f"more than a tenth of the load, {more}although the film formula assumes that the oil "
-        "carries it": loaded,
+        f"more than a tenth of the load, {more}where the film of smooth rollers is less certain": (
+            loaded
+        ),
         f"load share: at {rubs} of {share.size} operating points the surfaces' asperities carry "
         "more than a tenth of the load, where the film of smooth rollers is less certain": rubs,
         f"roughness: at {bends} of {share.size} operating points the oil changes it by more than a "

@@ -30,16 +30,19 @@ SAMPLE_BATCHES = 8
 
 
 def _end(text, units):
-    """Read an end of a range: percent become a fraction."""
+    """Read an end of a range, a number of `units`."""
     if units == "%":
         if not text.endswith("%"):
             raise LubeError(f"got {text!r}, need a number of %")
-        return parse_number(text.removesuffix("%").strip()) / 100.0
+        return parse_number(text.removesuffix("%").strip())
     return parse_quantity(text, units) if units else parse_number(text)
 
 
 def _range(units, example, **limits):
-    """Say how to read a range, ``A to B`` or ``+- A``, whose ends are kept in `units`."""
+    """Say how to read a range, ``A to B`` or ``+- A``, whose ends are kept in `units`.
+
+    Percent are kept as fractions.
+    """
     needed = f"range such as {example}"
 
     def parse(value):
@@ -47,10 +50,10 @@ def _range(units, example, **limits):
         if match is None or (match[1] and not units):
             raise LubeError(f"got {shown(value)}, need a {needed}")
         ends = [f"-{match[1]}", match[1]] if match[1] else [match[2], match[3]]
-        lower, upper = (bounded(_end(end.strip(), units), None, end, **limits) for end in ends)
+        lower, upper = (bounded(_end(end.strip(), units), units, end, **limits) for end in ends)
         if lower >= upper:
             raise LubeError(f"got {shown(value)}, need the lower end first")
-        return lower, upper
+        return (lower / 100.0, upper / 100.0) if units == "%" else (lower, upper)
 
     return read_by(parse, {"type": "string", "format": needed})
 
@@ -105,7 +108,7 @@ class Relative(_Uncertain):
     _SCALE: ClassVar[float] = 100.0
     _LIMITS: ClassVar[dict[str, float]] = {"above": -100.0}
 
-    range: Annotated[tuple[float, float], _range("%", "+- 10 %", above=-1.0, most=10.0)]
+    range: Annotated[tuple[float, float], _range("%", "+- 10 %", above=-100.0, most=1000.0)]
     """deviation from the study's value"""
 
 

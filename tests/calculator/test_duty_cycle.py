@@ -197,7 +197,8 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         ({"Radii": ["50 mm", "5 mm", "5 mm"]}, "points: unknown column 'Radii', need one of"),
         ({"weight": ["90 %", "5 %", "5 %"]}, "points: unknown column 'weight', need one of"),
         ({"radius": ["a", "b", "c"]}, "points: radius: got 'a', need a number with its unit"),
-        ({"note": ["a", "b", np.nan]}, "points: unknown column 'note', need one of"),
+        ({"note": ["a", "b", np.nan]}, "points: note: missing in row 3, need it in every row"),
+        ({"radius": [None, "50 mm", "50 mm"]}, "points: radius: missing in row 1, need it in"),
         ({"share": [1.0, -1.0, 1.0]}, "points: share: got -1, need a value at least 0"),
         (
             {"share": ["1 %", "1 %", 0.7]},
@@ -210,7 +211,7 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         ),
         ({"surface_speed [m/s]": [1.0] * 3}, "points: got speed and surface_speed, need one"),
         ({"force [N]": None}, "points: no column 'force', need one, as 'force [N]'"),
-        ({"force [N]": [1.0, np.nan, 1.0]}, "points: force: got nan, need a value above 0 N"),
+        ({"force [N]": [1.0, np.nan, 1.0]}, "points: force [N]: missing in row 2, need it in"),
         ({"force [m]": [1.0] * 3, "force [N]": None}, "points: force: wrong dimension or unit 'm'"),
         ({"force [kN]": [1.0] * 3}, "points: got the column 'force' twice, need it once"),
         ({name: [] for name in POINTS}, "points: got no rows, need one for each duty point"),

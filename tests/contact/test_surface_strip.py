@@ -12,6 +12,7 @@ from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import StripFilm, strip_probability, surface_contact
 from lube.errors import StudyError
 from lube.grid.gap import Gap
+from lube.schema import LIMITS
 from lube.stages import film_table
 from lube.stages.tail import pair_probabilities
 from lube.study.oil_properties import lubricant_table
@@ -193,6 +194,24 @@ def test_a_layer_that_no_sampled_contact_breaks_has_an_upper_limit(study, make_s
     for name in ("breakthrough_probability", "breakthroughs", "breakdown_ratio"):
         assert found[name] == found[f"{name}_lower"] == 0.0
         assert 0.0 < found[f"{name}_upper"] < 1e-3 * found["contacts"]
+
+
+def test_breakthrough_is_no_more_likely_than_contact(study, make_spec, monkeypatch):
+    oil = lubricant_table(study.lubricants, [40.0])
+    film = film_table(oil, study.rollers, [1600.0], [100.0], ["paper"])
+    layer = study.boundary_layer.model_copy(update={"shear_strength": 2e5})
+    sample = surface_strip._on_one_surface
+
+    def exchanged(*arguments):  # errors of sampling, exaggerated
+        first, numbers = sample(*arguments)
+        return first[:, ::-1], numbers
+
+    monkeypatch.setattr(surface_strip, "_on_one_surface", exchanged)
+    found = surface_contact(RoughPair(make_spec(30_000), 10e-3, layer, SEED), film)
+    assert found["breakthrough_probability"] > 0.0
+    for end in LIMITS:
+        geometric, breakthrough = (found[f"{name}{end}"] for name in surface_strip._NUMBERS)
+        assert breakthrough <= geometric
 
 
 @pytest.mark.parametrize("temperature", [40.0, 80.0])

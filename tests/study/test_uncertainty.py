@@ -64,7 +64,7 @@ def test_ranges_are_read_in_their_units(tmp_path):
         ("force", {"range": "+- 2"} | SOURCE, "need a number of %"),
         ("force", {"range": "+- -5 %"} | SOURCE, "got '+- -5 %', need a range such as +- 10 %"),
         ("force", {"range": "2 %"} | SOURCE, "got '2 %', need a range such as"),
-        ("force", {"range": "-120 % to 0 %"} | SOURCE, "need a value above -1 and at most 10"),
+        ("force", {"range": "-120 % to 0 %"} | SOURCE, "above -100 and at most 1000 %"),
         ("hurst_exponent", {"range": "0.5 to 1.5"} | SOURCE, "need a value above 0 and below 1"),
         (
             "kurtosis",
