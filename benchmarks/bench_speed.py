@@ -27,8 +27,8 @@ from lube.kernels.strips import strip_statistics
 from lube.schema import label
 from lube.stages.film import film_table
 from lube.storage.netcdf import save
-from lube.study.line_spec import line_spec
 from lube.study.oil_properties import lubricant_table
+from lube.study.roller_lines import line_spec
 from lube.study.study import load_study
 from lube.surfaces.synthetic import draw_line, draw_realisation
 

@@ -9,7 +9,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.errors import StudyError, shown
 from lube.grid.gap import Gap
 from lube.study.field_types import validate
-from lube.study.line_spec import band_in_words, line_spec
+from lube.study.roller_lines import band_in_words, line_spec
 from lube.study.rollers import (
     AUTOMATIC_WAVELENGTH,
     INSULATOR,

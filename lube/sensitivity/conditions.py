@@ -23,8 +23,8 @@ from lube.study.study import Study
 from lube.study.uncertainty import (
     Factor,
     check_uncertainty,
+    deviating_heights,
     deviating_lines,
-    height_in_band,
 )
 from lube.types import Array
 
@@ -224,11 +224,7 @@ class Deviating:
 
     def rms_roughness(self, values: dict):
         """Rms height of both lines together, m."""
-        names, lines = ("first_rms_roughness", "second_rms_roughness"), self.study.line_spec.lines
-        heights = (line.rms_height * height_in_band(line, values) for line in lines)
-        each = zip(names, heights, strict=True)
-        rms = np.sqrt(sum((rms * (1.0 + values.get(name, 0.0))) ** 2 for name, rms in each))
-        return rms * (1.0 + values.get("rms_roughness", 0.0))
+        return np.sqrt(sum(rms**2 for rms in deviating_heights(self.study.line_spec, values)))
 
     def equivalent(self, ratio: xr.DataArray, values: dict) -> xr.DataArray:
         """Find the lambda ratio at which Gaussian heights touch as often as those of the samples.

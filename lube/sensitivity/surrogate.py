@@ -18,7 +18,7 @@ from scipy.interpolate import RBFInterpolator
 
 from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating
-from lube.study.uncertainty import height_in_band
+from lube.study.uncertainty import deviating_heights
 from lube.types import Array
 
 SMOOTHING = 0.1
@@ -71,10 +71,7 @@ def groups(
     found = [ratio, np.log(film["contact_half_width"] / longest), np.log(shortest / longest)]
     found += [np.log(strength * shortest ** (2.0 - hurst) * longest**hurst / rms), hurst]
     if not spec.has_like_lines:
-        first = spec.rms_height[0] * height_in_band(spec.lines[0], values)
-        first = first * (1.0 + values.get("first_rms_roughness", 0.0))
-        first = first * (1.0 + values.get("rms_roughness", 0.0))
-        found += [(first / rms) ** 2]
+        found += [(deviating_heights(spec, values)[0] / rms) ** 2]
     if any(line.has_roll_off for line in spec.lines):
         found += [np.log(longest)]
     if not gap.is_plain:

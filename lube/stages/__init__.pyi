@@ -31,10 +31,10 @@ from lube.stages.trace import contact_window as contact_window
 from lube.storage.netcdf import save as save
 from lube.study.line_spec import LineSpec as LineSpec
 from lube.study.line_spec import RoughLine as RoughLine
-from lube.study.line_spec import line_spec as line_spec
 from lube.study.lubricant_record import load_record as load_record
 from lube.study.lubricant_record import shipped_records as shipped_records
 from lube.study.oil_properties import lubricant_table as lubricant_table
+from lube.study.roller_lines import line_spec as line_spec
 from lube.study.rollers import BoundaryLayer as BoundaryLayer
 from lube.study.rollers import Roller as Roller
 from lube.study.rollers import RollerPair as RollerPair

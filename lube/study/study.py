@@ -20,12 +20,13 @@ from lube.grid.levels import SAME, level_index, rolling
 from lube.physics.electrical import divider_voltage
 from lube.schema.stages import ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
-from lube.study.line_spec import LineSpec, band_in_words, line_spec
+from lube.study.line_spec import LineSpec
 from lube.study.lubricant_record import LubricantRecord, load_record
 from lube.study.metadata import About
 from lube.study.operating_grid import OperatingGrid, TracePoint
 from lube.study.resolve import resolved_content, with_paths
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
+from lube.study.roller_lines import band_in_words, line_spec
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes

@@ -16,7 +16,8 @@ from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, located, shown
 from lube.physics.pressure_viscosity import DEFINITIONS
 from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
-from lube.study.line_spec import LineSpec, RoughLine, beyond_cutoffs
+from lube.study.line_spec import LineSpec
+from lube.study.roller_lines import beyond_cutoffs
 from lube.study.rollers import ROLLERS
 from lube.types import ContactModel, FilmShape, InletHeating, Values
 from lube.units import parse_number, parse_quantity, with_unit
@@ -307,13 +308,11 @@ def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
     """
     longer = 1.0 + values.get("longest_wavelength", 0.0)
     shorter = 1.0 + values.get("shortest_wavelength", 0.0)
-    higher = 1.0 + values.get("rms_roughness", 0.0)
     lines = []
-    for line, name in zip(spec.lines, ROLLERS, strict=True):
-        own = 1.0 + values.get(f"{name}_rms_roughness", 0.0)
+    for line, height in zip(spec.lines, deviating_heights(spec, values), strict=True):
         q_min = line.q_min / longer
         update = {
-            "rms_height": line.rms_height * higher * own * height_in_band(line, values),
+            "rms_height": height,
             "q_min": q_min,
             "q_roll_off": max(line.q_roll_off, q_min) if line.has_roll_off else q_min,
             "q_max": line.q_max / shorter,
@@ -323,22 +322,31 @@ def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
     return spec.model_copy(update={"lines": tuple(lines)})
 
 
-def height_in_band(line: RoughLine, values: Mapping[str, Values]) -> Values:
-    """Rms height of a line whose band deviates, over that of the line.
-
-    It is 1 unless the height was stated for waves within cutoffs.
+def deviating_heights(spec: LineSpec, values: Mapping[str, Values]) -> tuple[Values, Values]:
+    """Rms height of each line whose parameters deviate, m.
 
     Parameters
     ----------
-    line : RoughLine
-        A line of the study.
+    spec : LineSpec
+        The lines of the study.
     values : dict of str to float or xarray.DataArray
         As in `deviating_lines`.
 
     Returns
     -------
-    float or xarray.DataArray
-        The ratio.
+    tuple of float or xarray.DataArray
+        The heights.
+    """
+    higher = 1.0 + values.get("rms_roughness", 0.0)
+    own = (1.0 + values.get(f"{name}_rms_roughness", 0.0) for name in ROLLERS)
+    each = zip(spec.lines, own, strict=True)
+    return tuple(line.rms_height * higher * one * _in_band(line, values) for line, one in each)
+
+
+def _in_band(line, values):
+    """Rms height of a line whose band deviates, over that of the line.
+
+    It is 1 unless the height was stated for waves within cutoffs.
     """
     cutoffs = line.long_cutoff, line.short_cutoff
     roll_off = 2.0 * math.pi / line.q_roll_off if line.has_roll_off else None

@@ -9,7 +9,7 @@ from lube.contact.surface_strip import surface_contact
 from lube.contact.surface_trace import surface_traces
 from lube.grid.gap import PLAIN, Gap
 from lube.statistics.confidence import mean_interval
-from lube.study.line_spec import line_spec
+from lube.study.roller_lines import line_spec
 
 from .test_surface_trace import LAY, films
 
