@@ -25,6 +25,7 @@ FLOODED = 1e4
 A tenth of this height thins the film by up to 0.2 %."""
 TOLERANCE = 1e-9
 """Largest defect of the mass flux, over the flux at the centre, and of the load, over the load."""
+_SPIKE_REACH, _SHARP = 0.15, 2.0
 _HERTZ_DEFLECTION = 0.25 + 0.5 * np.log(2.0)
 """Scaled deflection of the dry contact at the line of centres."""
 _FITTINGS = 2
@@ -166,6 +167,19 @@ class FilmProfile:
 
         thinnest = self.middle[np.argmin(self.flow.gap)]
         return float(brentq(beyond, thinnest, self.nodes[-1]))
+
+    @cached_property
+    def spike(self) -> float:
+        """Position of the pressure spike over the half-width, NaN without one.
+
+        It is a maximum more than twice as sharp as that of Hertz' pressure.
+        """
+        peaks = 1 + np.flatnonzero(np.diff(np.sign(np.diff(self.pressure))) < 0.0)
+        place, before = self.nodes[peaks], _SPIKE_REACH * (self.film_end - self.nodes[peaks])
+        rise = self.pressure[peaks] - self.pressure_at(place - before)
+        sharpest = np.argmax(rise)
+        is_sharp = rise[sharpest] > _SHARP * before[sharpest] ** 2
+        return float(place[sharpest]) if is_sharp else np.nan
 
     @cached_property
     def central_gap(self) -> float:

@@ -29,6 +29,10 @@ POSITIONS = 0.02, 1.06
 ANGLES = np.arange(0.0, 91.0, 15.0)
 """Angles between rolling and the direction of the waves of a surface, degrees. Between them the
 response is interpolated to 0.4 % of the wave in pure rolling, and to 0.8 % with slip."""
+SHIFT = 0.15
+"""Rms shift of the pressure spike by the roughness, over its distance from the end of the film."""
+LONG = 16.0
+"""Length of waves over the largest shift that is taken for them."""
 DIRECTIONS, LENGTHS = 180, 1000
 """Directions and lengths among which the mean square height of a surface is distributed."""
 VARIABLES = "response_real", "response_imaginary", "interpolation_error", "rms_deformation"
@@ -263,6 +267,20 @@ def changed_waves(
 
 
 def _of_wave(profile, wavelength, speeds, positions, angle):
-    """Response to a wave at some speeds."""
+    """Response to a wave at some speeds, under a pressure spike that the roughness shifts."""
     wave = WaveResponse(profile, wavelength, angle=angle)
-    return np.stack([wave.transfer(speed, positions) for speed in speeds])
+    spike = profile.spike
+    if np.isnan(spike):
+        return np.stack([wave.transfer(speed, positions) for speed in speeds])
+    shift = min(SHIFT * (profile.film_end - spike), wavelength / LONG)
+    scaled, finer = (positions - spike) / shift, np.linspace(-5.0, 5.0, 201)
+    near = np.abs(scaled) < 4.0
+    # Farther from the spike the shift matters less and less, and is taken as smaller.
+    width = np.sqrt(1.0 - (scaled[near, None] / 4.0) ** 2) + np.diff(finer)[0]
+    likely = np.exp(-0.5 * ((scaled[near, None] - finer) / width) ** 2)
+    likely /= likely.sum(axis=1, keepdims=True)
+    wanted = np.append(positions, spike + shift * finer)
+    found = np.stack([wave.transfer(speed, wanted) for speed in speeds])
+    response, around = np.split(found, [positions.size], axis=1)
+    response[:, near] = np.einsum("sf,pf->sp", around, likely)
+    return response

@@ -368,6 +368,19 @@ def test_a_naive_solution_gives_the_same_film(point):
 # --- Refusals ----------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("numbers", [(4.0, 15.0), (10.0, 10.0), (50.0, 8.0)])
+def test_the_pressure_spike_is_where_the_pressure_bends_most(numbers):
+    profile = solve(contact_of(*numbers, "roelands"))
+    slope = np.diff(profile.pressure) / np.diff(profile.nodes)
+    bends = np.diff(slope)[1:]
+    assert profile.spike == pytest.approx(profile.nodes[2 + bends.argmin()], abs=0.01)
+
+
+@pytest.mark.parametrize("numbers", [(0.3, 8.0), (1.5, 8.0), (30.0, 1.0)])
+def test_a_smooth_maximum_of_the_pressure_is_no_spike(numbers):
+    assert np.isnan(solve(contact_of(*numbers, "roelands")).spike)
+
+
 def test_a_meniscus_inside_the_contact_is_refused():
     with pytest.raises(RangeError, match=r"got 0\.8 half-widths before .*, need more than 1"):
         solve(contact_at(800, 100, 40), meniscus=0.8)
