@@ -90,12 +90,12 @@ class StripFilm:
         """
         return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
 
-    def answered(self, surface: Surface, rows: Pair) -> AnsweredStrip | None:
+    def answered(self, surface: Surface, rows: Pair, threads=None) -> AnsweredStrip | None:
         """Find what the oil adds to a surface, for covariances over rows before and after."""
         if self.answers is None or not any(one.shapes.size for one in self.answers):
             return None
         columns = self._columns(surface.spacing[1])
-        return AnsweredStrip(self.answers, surface, columns[0], columns.size, *rows)
+        return AnsweredStrip(self.answers, surface, columns[0], columns.size, *rows, threads)
 
     def contacts(
         self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0

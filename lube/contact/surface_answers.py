@@ -12,6 +12,7 @@ from lube.contact.waves import FINER, PRECISION, STEEPNESS, Answer, expanded
 from lube.ehl.response import at_wavelengths
 from lube.kernels.areal import Answered
 from lube.surfaces.rough_surface import Surface
+from lube.threads import on_threads
 from lube.types import Array, Pair
 
 FINER_ANGLES = 3
@@ -146,6 +147,8 @@ class AnsweredStrip:
         Columns of the strip.
     before, after : int
         Rows before and after that of a height with which its covariances are wanted.
+    threads : int, optional
+        Threads that share the work; they do not change the results.
 
     Attributes
     ----------
@@ -158,8 +161,15 @@ class AnsweredStrip:
     """
 
     def __init__(
-        self, answers: Pair, surface: Surface, begin: float, columns: int, before: int, after: int
-    ):
+        self,
+        answers: Pair,
+        surface: Surface,
+        begin: float,
+        columns: int,
+        before: int,
+        after: int,
+        threads: int | None = None,
+    ) -> None:
         are_alike = answers[0] is answers[1]
         self.answers = answers[:1] if are_alike else answers
         self.shift = self.answers[0].shift(surface.spacing[1])
@@ -187,21 +197,22 @@ class AnsweredStrip:
         self._first_lag = -before >> self.shift
         lags = np.arange(self._first_lag, (after >> self.shift) + 2) << self.shift
         added = [
-            self._added(part * variances, curvatures, *each, nodes, lags, surface)
+            self._added(part * variances, curvatures, *each, nodes, lags, surface, threads)
             for part, *each in zip(parts, filters, self._shapes, strict=True)
         ]
         self._covariances = np.ascontiguousarray(sum(added))
         own = np.diagonal(self._covariances[0, :, -self._first_lag])
         self.rms = np.sqrt(1.0 + np.interp(np.arange(columns), nodes, own))
 
-    def _added(self, variances, curvatures, filters, shapes, nodes, lags, surface):
+    def _added(self, variances, curvatures, filters, shapes, nodes, lags, surface, threads):
         """Sum what the oil adds to the covariances of one surface, with heights and curvatures."""
         down_unit, unit = (2.0 * np.pi / number for number in surface.points)
         downs = np.arange(self._down.max() + 1)
         # Waves up and down the rollers together: their sums, and differences unless they are alike.
         parts = [np.cos] if surface.is_mirrored else [np.cos, np.sin]
         of_waves = np.empty((len(parts), downs.size, 2, nodes.size, nodes.size), np.float32)
-        for down in downs:
+
+        def fill(down):
             here = np.flatnonzero(np.abs(self._down) == down)
             drawn = np.exp(1j * unit * nodes[:, None] * self._along[here])
             changed = (1.0 + shapes @ filters[here].T) * drawn
@@ -209,10 +220,14 @@ class AnsweredStrip:
             power = variances[here] * np.where(self._along[here], 2.0, 1.0)
             curved, by_oil = drawn * (power * curvatures[here]), changed - drawn
             for part, signs in enumerate([1.0, 1j * np.sign(self._down[here])][: len(parts)]):
-                heights = changed.conj() @ (changed * power * signs).T
-                heights -= drawn.conj() @ (drawn * power * signs).T
-                curvatures_too = by_oil.conj() @ (curved * signs).T
-                of_waves[part, down] = heights.real, curvatures_too.real
+                as_drawn = drawn * (power * signs)
+                stays = _products(drawn, as_drawn[:1]), _products(drawn[:1], as_drawn)
+                heights = _products(changed, changed * (power * signs))
+                # As drawn, covariances are the same for all nodes equally far apart.
+                heights -= scipy.linalg.toeplitz(*map(np.ravel, stays))
+                of_waves[part, down] = heights, _products(by_oil, curved * signs)
+
+        on_threads(fill, downs, threads)
         along = [one(down_unit * lags[:, None] * downs) for one in parts]
         along = np.stack(along).astype(np.float32)
         return np.einsum("prd,pdktc->ktrc", along, of_waves, optimize=True)
@@ -243,3 +258,8 @@ class AnsweredStrip:
         # For another layout in memory Numba would compile the kernels once more.
         stacked = np.ascontiguousarray(np.stack(fields, axis=-1))
         return Answered(stacked, shapes, self._covariances, first, self.shift)
+
+
+def _products(some, others):
+    """Real part of the products of conjugate waves with others, summed over the waves."""
+    return some.view(float) @ others.view(float).T

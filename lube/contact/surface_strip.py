@@ -306,7 +306,7 @@ def _sampled(pair, surface, strips, certain, sharp, seeds, threads):
         for strip, own in zip(strips, sharp, strict=True)
     ]
     with one_blas_thread():
-        answered = on_threads(lambda strip: strip.answered(surface, rows), strips, threads)
+        answered = [strip.answered(surface, rows, threads) for strip in strips]
     strips = list(zip(films, limits, certain.tolist(), answered, strict=True))
     covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
 

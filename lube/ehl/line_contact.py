@@ -103,7 +103,7 @@ class LineContact:
         return float(asymptotic_film(*numbers) * np.sqrt(2.0 * self.speed) / self.half_width**2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FilmProfile:
     """Pressure and film of a line contact.
 

@@ -27,6 +27,8 @@ The crests of a wave on a rough surface may lie at an angle, and the wave is
     \hat h = \frac{1}{\pi} \int \hat p\, K_0(|k_y| |X - X'|)\, dX' + e^{i k_x X}
 """
 
+import functools
+
 import numpy as np
 import scipy
 
@@ -80,8 +82,8 @@ class WaveResponse:
     def __init__(
         self, profile: FilmProfile, wavelength: float, fineness: float = 1.0, angle: float = 0.0
     ) -> None:
-        nodes = _resolving_nodes(profile, wavelength / (POINTS_A_WAVE * fineness))
-        self.profile, self.wavelength = on_nodes(profile, nodes), wavelength
+        self.profile = _resolving(profile, wavelength / (POINTS_A_WAVE * fineness))
+        self.wavelength, nodes = wavelength, self.profile.nodes
         wavenumber, angle = 2.0 * np.pi / wavelength, np.radians(angle)
         self._along, self._across = wavenumber * np.cos(angle), wavenumber * np.sin(angle)
         self._discrete = DiscreteContact(profile.contact, nodes, self._across)
@@ -179,15 +181,17 @@ def at_wavelengths(
     return 1.0 + (wanted >= wavelengths[-1])[:, None] * found
 
 
-def _resolving_nodes(profile, step):
-    """Nodes of a film, with others between them where they are further apart than a step."""
+@functools.lru_cache(maxsize=128)  # waves of one length at all angles need the same nodes
+def _resolving(profile, step):
+    """Solve for a film again, with more nodes where they are further apart than a step."""
     nodes, size = profile.nodes, np.diff(profile.nodes)
     middle, gap = profile.middle, profile.flow.gap
     wide = middle[(middle < 0.0) & (gap > WIDE * profile.central_gap)]
     low, high = wide[-1] if wide.size else nodes[0], nodes[profile.end + 1]
     largest = step + _GROWTH * np.maximum(0.0, np.maximum(low - middle, middle - high))
     counts = np.ceil(size / largest * (1.0 - 1e-9)).astype(int)
-    return np.interp(np.arange(counts.sum() + 1), np.append(0, np.cumsum(counts)), nodes)
+    places = np.arange(counts.sum() + 1)
+    return on_nodes(profile, np.interp(places, np.append(0, np.cumsum(counts)), nodes))
 
 
 def resolved_part(points: Array) -> Array:

@@ -1,5 +1,11 @@
-"""Responses of the film to waves of the roughness, over any operating conditions."""
+"""Responses of the film to waves of the roughness, over any operating conditions.
 
+Roughness shifts the pressure spike. The linear response takes the shift as small compared with the
+width of the spike. Roughness that may touch shifts it much further, so around a spike the response
+is the mean of that to spikes at all of these places.
+"""
+
+import itertools
 import logging
 
 import numpy as np
@@ -132,16 +138,18 @@ def _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads):
     slips = slide_to_roll_ratio.broadcast_like(films).transpose(*films.dims, ...)
     speeds = np.stack(surface_speeds(1.0, slips.values), axis=-1)
 
-    def of_film(at):
-        scaled = waves / widths.values[at]
-        found = [_of_film(films.values[at], scaled, speeds[at], positions, one) for one in angles]
-        return [np.stack(each, axis=speeds[at].ndim) for each in zip(*found, strict=True)]
+    def of_film(item):
+        at, angle = item
+        return _of_film(films.values[at], waves / widths.values[at], speeds[at], positions, angle)
 
+    items = itertools.product(np.ndindex(films.shape), angles)
     with one_blas_thread():
-        found = on_threads(of_film, np.ndindex(films.shape), threads, "response of the film")
-    shape = *speeds.shape, angles.size
+        found = on_threads(of_film, items, threads, "response of the film")
+    # Numbers of films and of angles come first, then those of slips and rollers.
+    shape = *films.shape, angles.size, *speeds.shape[films.ndim :]
     response = np.reshape([each for each, _ in found], (*shape, waves.size, positions.size))
-    error = np.reshape([each for _, each in found], shape)
+    response = np.ascontiguousarray(np.moveaxis(response, films.ndim, -3))
+    error = np.moveaxis(np.reshape([each for _, each in found], shape), films.ndim, -1)
     levels = {"roller": [1, 2], "wave_angle": angles}
     error = xr.DataArray(error, {**slips.coords, **levels}, (*slips.dims, *levels))
     levels |= {"wavelength": waves, "response_position": positions}
@@ -267,7 +275,7 @@ def changed_waves(
 
 
 def _of_wave(profile, wavelength, speeds, positions, angle):
-    """Response to a wave at some speeds, under a pressure spike that the roughness shifts."""
+    """Response to a wave at some speeds, a mean over shifted pressure spikes."""
     wave = WaveResponse(profile, wavelength, angle=angle)
     spike = profile.spike
     if np.isnan(spike):
