@@ -122,7 +122,7 @@ def _floats(numbers):
 
 
 def bare_number(name: str, value: object, **limits: float) -> float:
-    """Check a number that is given without unit, such as a share of time; `limits` as for `amount`.
+    """Check a number that needs no unit but may be in %; `limits` as for `amount`.
 
     Raises
     ------
@@ -130,7 +130,11 @@ def bare_number(name: str, value: object, **limits: float) -> float:
         Which argument, what came, what is needed.
     """
     with located(name, StudyError):
-        return bounded(parse_number(value), None, **limits)
+        if np.ndim(value):
+            raise LubeError(f"got {shown(value)}, need one number")
+        in_percent = isinstance(value, str) and value.endswith("%")
+        number = parse_quantity(value, "1") if in_percent else parse_number(value)
+        return bounded(number, None, **limits)
 
 
 def conditions(force: Amount, speed: Amount, temperature: Amount, radius: float) -> Point:

@@ -69,7 +69,7 @@ class FilmSearch:
         As in `lube.contact_probability`.
     """
 
-    def __init__(self, assumed: Assumptions, share: float, realisations: int) -> None:
+    def __init__(self, assumed: Assumptions, share: float | str, realisations: int) -> None:
         rollers, choices, seed = assumed.rollers, assumed.choices, assumed.seed
         if len(choices.models) > 1:
             raise StudyError(f"contact_model: got {shown(list(choices.models))}, need one name")

@@ -40,7 +40,7 @@ def required_film(
     rollers: Rollers,
     force: OneAmount,
     *,
-    share: float = 0.01,
+    share: float | str = 0.01,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -54,8 +54,8 @@ def required_film(
         The two rollers.
     force : str, tuple or pint.Quantity
         Normal force, such as ``"800 N"``; it sets the contact width.
-    share : float, optional
-        Largest breakthrough probability allowed; 0.01 is one per cent.
+    share : float or str, optional
+        Largest breakthrough probability allowed, such as 0.01 or ``"1 %"``.
     contact_model : str, optional
         ``"line"`` or ``"surface"``, as in `lube.contact_probability`; the surface takes a minute.
     realisations, seed : int, optional
@@ -108,7 +108,7 @@ def required_viscosity(
     speed: OneAmount,
     temperature: OneAmount,
     *,
-    share: float = 0.01,
+    share: float | str = 0.01,
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
@@ -178,7 +178,7 @@ def required_speed(
     force: OneAmount,
     temperature: OneAmount,
     *,
-    share: float = 0.01,
+    share: float | str = 0.01,
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
@@ -235,7 +235,7 @@ def required_temperature(
     force: OneAmount,
     speed: OneAmount,
     *,
-    share: float = 0.01,
+    share: float | str = 0.01,
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",
@@ -294,7 +294,7 @@ def required_roughness(
     speed: OneAmount,
     temperature: OneAmount,
     *,
-    share: float = 0.01,
+    share: float | str = 0.01,
     film_formula: str = FORMULA,
     film_shape: FilmShape = "flat",
     roughness_deformation: RoughnessDeformation = "none",

@@ -12,7 +12,7 @@ from studies import ROOT
 import lube
 from lube import StudyError
 from lube.calculator.answers import described
-from lube.calculator.arguments import amount
+from lube.calculator.arguments import amount, bare_number
 from lube.lazy import homes
 
 
@@ -56,6 +56,10 @@ def test_a_mistake_is_one_line_that_names_the_argument(value, message):
     with pytest.raises(StudyError) as error:
         amount("force", value, "N", above=0.0)
     assert str(error.value) == message
+
+
+def test_a_share_may_be_in_percent():
+    assert bare_number("share", "1 %", below=1.0) == bare_number("share", 0.01, below=1.0) == 0.01
 
 
 def test_results_have_customary_units_and_names():

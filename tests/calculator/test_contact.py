@@ -230,6 +230,7 @@ def test_threads_leave_the_options_of_xarray_as_they_were(rollers, oil):
             "roughness_deformation: got venner-1997, need none or computed for contact",
         ),
         ({"slide_to_roll_ratio": 3}, "slide_to_roll_ratio: got 3, need a value"),
+        ({"slide_to_roll_ratio": [0, 0.3]}, "slide_to_roll_ratio: got [0, 0.3], need one number"),
         (
             {"slide_to_roll_ratio": -0.1, "roughness_deformation": "venner-1997"},
             "roughness_deformation: got venner-1997 with a slide-to-roll ratio of -0.1, need none",
