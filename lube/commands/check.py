@@ -100,16 +100,18 @@ def _taken_over(path, study, changes):
 def _expected_run(study, points):
     """Estimate time and memory from those of the paper's study.
 
-    A million points of a line take some 0.7 ms at an operating point in pure rolling, and 0.9 s at
-    a slide-to-roll ratio of 1. Surfaces take 2 s at each point, or 9 s where the oil answers them,
+    A million points of a line take some 0.7 ms at an operating point in pure rolling, or 0.1 s where
+    the oil answers them, and 0.9 s at a slide-to-roll ratio of 1. The answer to lines takes 1.5 s at
+    each point. Surfaces take 2 s at each point, or 9 s where the oil answers them,
     and three times as long again for a curve at each record. Those of the rig, with five grid
     points in the shortest wave, take 60 ns for each grid point, or 300 ns, and the other jobs, most
     of all figures, 90 s.
     """
     size = study.roughness.points / 1e6
-    slips = sum(7e-4 + 0.9 * abs(ratio) for ratio in study.slips) / len(study.slips)
+    rolling = 0.1 if study.gap.is_answered else 7e-4
+    slips = sum(rolling + 0.9 * abs(ratio) for ratio in study.slips) / len(study.slips)
     runs = points * len(study.film_formulas) * slips
-    seconds = 90.0
+    seconds = 90.0 + 1.5 * points * study.gap.is_answered
     if study.has("contact"):
         seconds += study.realisations * size * (0.3 + runs)
     if study.has_surfaces:
