@@ -59,7 +59,7 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
         "surface": film.get("surface_load_share"),
     }
     carried = [
-        f"{100.0 * share.max().item():.3g} % by asperities of the {model}"
+        f"{float(f'{100.0 * share.max().item():.2g}'):g} % by asperities of the {model}"
         for model, share in shares.items()
         if share is not None
     ]
