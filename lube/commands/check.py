@@ -100,12 +100,12 @@ def _taken_over(path, study, changes):
 def _expected_run(study, points):
     """Estimate time and memory from those of the paper's study.
 
-    A million points of a line take some 0.7 ms at an operating point in pure rolling, or 0.1 s where
-    the oil answers them, and 0.9 s at a slide-to-roll ratio of 1. The answer to lines takes 1.5 s at
-    each point. Surfaces take 2 s at each point, or 9 s where the oil answers them,
-    and three times as long again for a curve at each record. Those of the rig, with five grid
-    points in the shortest wave, take 60 ns for each grid point, or 300 ns, and the other jobs, most
-    of all figures, 90 s.
+    A million points of a line take some 0.7 ms at an operating point in pure rolling, or 0.1 s
+    where the oil answers them, and 0.9 s at a slide-to-roll ratio of 1. The answer to lines takes
+    1.5 s at each point. Surfaces take 2 s at each point, or 9 s where the oil answers them, and
+    three times as long again for a curve at each record. Those of the rig, with five grid points in
+    the shortest wave, take 60 ns for each grid point, or 300 ns, and the other jobs, most of all
+    figures, 90 s.
     """
     size = study.roughness.points / 1e6
     rolling = 0.1 if study.gap.is_answered else 7e-4
