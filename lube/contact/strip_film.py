@@ -90,7 +90,7 @@ class StripFilm:
         """
         return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
 
-    def answered(self, surface: Surface, rows: Pair, threads=None) -> AnsweredStrip | None:
+    def answered(self, surface: Surface, rows: Pair, threads=1) -> AnsweredStrip | None:
         """Find what the oil adds to a surface, for covariances over rows before and after."""
         if self.answers is None or not any(one.shapes.size for one in self.answers):
             return None

@@ -147,8 +147,8 @@ class AnsweredStrip:
         Columns of the strip.
     before, after : int
         Rows before and after that of a height with which its covariances are wanted.
-    threads : int, optional
-        Threads that share the work; they do not change the results.
+    threads : int or None, optional
+        Threads that share the work, None for one on each core; they do not change the results.
 
     Attributes
     ----------
@@ -168,7 +168,7 @@ class AnsweredStrip:
         columns: int,
         before: int,
         after: int,
-        threads: int | None = None,
+        threads: int | None = 1,
     ) -> None:
         are_alike = answers[0] is answers[1]
         self.answers = answers[:1] if are_alike else answers

@@ -38,7 +38,7 @@ response is interpolated to 0.4 % of the wave in pure rolling, and to 0.8 % with
 SHIFT = 0.15
 """Rms shift of the pressure spike by the roughness, over its distance from the end of the film."""
 LONG = 16.0
-"""Length of waves over the largest shift that is taken for them."""
+"""The shift is at most the length of the wave over this number, so that no wave is averaged away."""
 DIRECTIONS, LENGTHS = 180, 1000
 """Directions and lengths among which the mean square height of a surface is distributed."""
 VARIABLES = "response_real", "response_imaginary", "interpolation_error", "rms_deformation"
@@ -138,13 +138,13 @@ def _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads):
     slips = slide_to_roll_ratio.broadcast_like(films).transpose(*films.dims, ...)
     speeds = np.stack(surface_speeds(1.0, slips.values), axis=-1)
 
-    def of_film(item):
+    def at_angle(item):
         at, angle = item
         return _of_film(films.values[at], waves / widths.values[at], speeds[at], positions, angle)
 
     items = itertools.product(np.ndindex(films.shape), angles)
     with one_blas_thread():
-        found = on_threads(of_film, items, threads, "response of the film")
+        found = on_threads(at_angle, items, threads, "response of the film")
     # Numbers of films and of angles come first, then those of slips and rollers.
     shape = *films.shape, angles.size, *speeds.shape[films.ndim :]
     response = np.reshape([each for each, _ in found], (*shape, waves.size, positions.size))
