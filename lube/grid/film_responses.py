@@ -38,7 +38,7 @@ response is interpolated to 0.4 % of the wave in pure rolling, and to 0.8 % with
 SHIFT = 0.15
 """Rms shift of the pressure spike by the roughness, over its distance from the end of the film."""
 LONG = 16.0
-"""The shift is at most the length of the wave over this number, so that no wave is averaged away."""
+"""The shift is at most the length of a wave over this number, so that none is averaged away."""
 DIRECTIONS, LENGTHS = 180, 1000
 """Directions and lengths among which the mean square height of a surface is distributed."""
 VARIABLES = "response_real", "response_imaginary", "interpolation_error", "rms_deformation"
