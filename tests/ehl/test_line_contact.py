@@ -12,6 +12,7 @@ from paper_grid import (
     TEMPERATURE,
     VISCOSITY,
     contact_at,
+    contact_by,
     film,
     groups_at,
 )
@@ -390,6 +391,18 @@ def test_a_viscosity_below_that_of_roelands_pole_is_refused():
     thin = LineContact(1e-5, 1e-13, 3000.0, 5e-5, 2.3e11)
     with pytest.raises(RangeError, match=r"viscosity: got 5e-05 Pa s, need more than 6\.31e-05 Pa"):
         solve(thin)
+
+
+@pytest.mark.parametrize("numbers", [(3.5, 30.0), (8.0, 35.0), (2.0, 40.0)])
+def test_film_of_an_oil_that_is_almost_solid_is_converged(numbers):
+    contact = contact_by(*numbers)
+    usual, fine = solve(contact), solve(contact, fineness=2.0)
+    for name in "central_film", "minimum_film", "mean_film", "film_end":
+        assert getattr(usual, name) == pytest.approx(getattr(fine, name), rel=5e-4)
+    # Its pressure does not oscillate from node to node, as it did by half of Hertz' pressure.
+    inside = np.abs(usual.nodes[1:-1]) < 0.4
+    bend = usual.pressure[1:-1] - 0.5 * (usual.pressure[2:] + usual.pressure[:-2])
+    assert np.abs(bend[inside]).max() < 5e-3
 
 
 @pytest.mark.parametrize("at", [(1000.0, 20.0), (1000.0, 0.05), (1e5, 8.0), (0.1, 1e4)])
