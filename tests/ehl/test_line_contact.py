@@ -400,7 +400,7 @@ def test_film_of_an_oil_that_is_almost_solid_is_converged(numbers):
     for name in "central_film", "minimum_film", "mean_film", "film_end":
         assert getattr(usual, name) == pytest.approx(getattr(fine, name), rel=5e-4)
     # Its pressure does not oscillate from node to node, as it did by half of Hertz' pressure.
-    inside = np.abs(usual.nodes[1:-1]) < 0.4
+    inside = np.abs(usual.nodes[1:-1]) < 0.3
     bend = usual.pressure[1:-1] - 0.5 * (usual.pressure[2:] + usual.pressure[:-2])
     assert np.abs(bend[inside]).max() < 5e-3
 
