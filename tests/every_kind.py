@@ -44,7 +44,14 @@ def datasets_of_every_kind(study):
     others = [kind for kind, stage in STAGES.items() if stage.target == "benchmark"]
     others += ["patch", "passage", "film_plane", "heating_plane"]
     others += ["surface_response", "variants", "surface_records"]
-    others += ["sensitivity_runs", "sensitivity", "record_bands", "plan", "verification"]
+    others += [
+        "sensitivity_responses",
+        "sensitivity_runs",
+        "sensitivity",
+        "record_bands",
+        "plan",
+        "verification",
+    ]
     batches = ["sensitivity_runs_batch"]
     with on_few_surfaces():
         quick = made(own, [kind for kind in STAGES if kind not in others])

@@ -50,7 +50,7 @@ def made(study, kinds=tuple(STAGES), threads=2):
             continue
         if stage.in_batches == "samples":
             batch = maker(name, "make_batch")
-            datasets["batches"] = [batch(study, number) for number in range(SAMPLE_BATCHES)]
+            datasets["batches"] = [batch(study, datasets, at) for at in range(SAMPLE_BATCHES)]
         elif stage.in_batches:
             lines = roughness_batch(study.line_spec, study.seed, range(study.realisations))
             batch = maker(name, "make_batch")(study, datasets["film"], lines)

@@ -86,6 +86,7 @@ _NEEDED = {
     "compares_surfaces": "`contact_model: surface` and records, measured or by a rig with surfaces",
     "compares_lines_only": "records compared with lines alone; `gauge.nc` has films by surfaces",
     "is_uncertain": "a section `uncertainty` of what the probability depends on",
+    "answers_samples": "`roughness_deformation: computed`, or as a choice in `uncertainty`",
     "is_sampled": "Gaussian roughness lines that no formula flattens",
     "gap.is_plain": "`film_shape: flat` and `roughness_deformation: none`",
 }

@@ -326,6 +326,15 @@ _ROWS = (
         target="computed",
     ),
     Stage(
+        "sensitivity_responses",
+        "responses of the film for random values of what is uncertain, some minutes",
+        values=_LINES | _named("roughness_deformation contact_model uncertainty"),
+        same_values=("film",),
+        target="sensitivity",
+        only_with=("is_uncertain", "is_sampled", "answers_samples", *_LINE),
+        parallel=True,
+    ),
+    Stage(
         "sensitivity_runs",
         "probabilities for random values of what is uncertain",
         values=_LINES | _CONTACT | _named("rollers.length contact_model uncertainty"),

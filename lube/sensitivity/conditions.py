@@ -166,8 +166,9 @@ class Deviating:
         -------
         list of tuple
             For each film formula and model of inlet heating the numbers of the runs that choose
-            both, and their films as from `film_at`. Where a run chooses the computed film, and no
-            shape is asked for, the film of Moes' formula stands in for it.
+            both, and their films as from `film_at`. Without a model of heating its factor is 1.
+            Where a run chooses the computed film, and no shape is asked for, the film of Moes'
+            formula stands in for it.
         """
         heating = self.choices("inlet_shear_heating", self.study.inlet_shear_heating)
         count = next(iter(values.values())).sizes["run"]
@@ -209,6 +210,8 @@ class Deviating:
         )
         viscosity = oil["dynamic_viscosity"]
         table = table.isel(film_formula=0, drop=True).assign(dynamic_viscosity=viscosity)
+        if heating == "none":
+            table["inlet_shear_heating_factor"] = xr.ones_like(table["moes_load"])
         table.update({name: points[name] for name in GIVEN if name in points})
         if "roughness_factor" in table:
             return scaled_film(table, 1.0 / table["roughness_factor"])

@@ -15,6 +15,7 @@ from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating, joined
+from lube.sensitivity.responses import slips_of, solve_responses, with_responses
 from lube.sensitivity.samples import deviations, over_run, quantiles
 from lube.study.uncertainty import SAMPLE_BATCHES
 from lube.threads import on_threads
@@ -71,12 +72,6 @@ class Model(NamedTuple):
     def gap(self) -> Gap:
         """How film and roughness make up the gap."""
         return Gap(self.film_shape, self.roughness_deformation)
-
-    def shape(self, spec) -> dict:
-        """Arguments of `lube.grid.films.film_at` for the films of these lines or surfaces."""
-        answered = f"answered_{'surfaces' if self.contact_model == 'surface' else 'lines'}"
-        found = {"with_shape": self.gap.has_shape}
-        return found | ({answered: spec} if self.gap.is_answered else {})
 
 
 PLAIN_LINE = Model("line", "flat", "none")
@@ -159,7 +154,12 @@ def runs_of_batch(unit: Array, number: int) -> Array:
 
 
 def run(
-    deviating: Deviating, model: Model, unit: Array, points: xr.Dataset, threads: int | None = None
+    deviating: Deviating,
+    model: Model,
+    unit: Array,
+    points: xr.Dataset,
+    threads: int | None = None,
+    responses: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Compute the probability of breakthrough for some samples, each at an operating point.
 
@@ -176,6 +176,9 @@ def run(
         `Deviating.films` takes.
     threads : int, optional
         Threads that share the work; they do not change the results.
+    responses : xarray.Dataset, optional
+        From `lube.sensitivity.responses.solve_responses`, for these runs and others; by default for
+        these runs, if they need it.
 
     Returns
     -------
@@ -184,7 +187,15 @@ def run(
         where the film is not known, or the layer holds in all contacts that were sampled.
     """
     values = deviations(deviating.factors, unit)
-    films = deviating.films(over_run(values), points, **model.shape(deviating.study.line_spec))
+    films = deviating.films(over_run(values), points, with_shape=model.gap.has_shape)
+    if model.gap.is_answered:
+        contact_model, slips = model.contact_model, slips_of(deviating, points)
+        if responses is None:
+            responses = solve_responses(deviating, [contact_model], unit, points, threads)
+        films = [
+            (runs, with_responses(film, responses, contact_model, slips[runs]))
+            for runs, film in films
+        ]
     parts = ((runs, film, same) for runs, film in films for same in _same_samples(unit[runs]))
     of_samples = [(runs[same], film.isel(run=same)) for runs, film, same in parts]
 

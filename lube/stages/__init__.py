@@ -5,7 +5,7 @@ A stage is a row of `lube.schema.stages` and a module of its name with a functio
 and the number of threads that it may use, which does not change the result; it returns the dataset.
 Stages that run in batches find these datasets in ``inputs["batches"]``; their modules also have
 ``make_batch(study, film, lines)``, for the lines of some realisations, or ``make_batch(study,
-number)``, for some samples of what is uncertain.
+inputs, number)``, for some samples of what is uncertain.
 
 Functions that stages call, and the types of their arguments, are names of this package, listed in
 ``__init__.pyi``. They use SI units except for the operating variables: force in N, speed in r/min,

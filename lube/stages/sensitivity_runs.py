@@ -22,7 +22,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     return label(table.isel(run=np.argsort(number, kind="stable")), "sensitivity_runs")
 
 
-def make_batch(study: Study, number: int) -> xr.Dataset:
+def make_batch(study: Study, inputs: Datasets, number: int) -> xr.Dataset:
     """Make a batch of ``sensitivity_runs.nc``: part of the samples of all models.
 
     All runs draw the same random numbers.
@@ -31,6 +31,8 @@ def make_batch(study: Study, number: int) -> xr.Dataset:
     ----------
     study : Study
         The study.
+    inputs : dict of str to xarray.Dataset
+        With ``sensitivity_responses`` if the oil answers the roughness in some samples.
     number : int
         Number of the batch, from 0.
 
@@ -40,14 +42,14 @@ def make_batch(study: Study, number: int) -> xr.Dataset:
         The ``sensitivity_runs_batch`` file of `lube.schema`.
     """
     deviating = Deviating.of(study)
-    tables = []
+    tables, responses = [], inputs.get("sensitivity_responses")
     for model in models(deviating):
         unit, points = design(deviating, model)
         own = runs_of_batch(unit, number)
         if own.size == 0:
             continue
         points = points.isel(run=own)
-        found = run(deviating, model, unit[own], points, threads=1)
+        found = run(deviating, model, unit[own], points, 1, responses)
         found = found.reset_coords(drop=True).drop_attrs()
         table = found.map(six_digits).merge(points)
         table["factor_quantile"] = ("run", "factor"), unit[own]

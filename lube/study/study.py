@@ -179,6 +179,12 @@ class Study(StrictModel):
         return self.uncertainty is not None and bool(self.uncertainty.factors())
 
     @property
+    def answers_samples(self) -> bool:
+        """Whether the oil answers the roughness in samples of the sensitivity study."""
+        given = self.uncertainty and self.uncertainty.roughness_deformation
+        return "computed" in (given.choices if given else (self.roughness_deformation,))
+
+    @property
     def resistivity_range(self) -> tuple[float, float] | None:
         """How far the resistivity may deviate, over its value; None if that is not stated."""
         given = self.uncertainty and self.uncertainty.resistivity

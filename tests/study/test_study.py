@@ -141,9 +141,9 @@ MECHANICS |= {"sensitivity_runs"}
 # Those that are for pure rolling too.
 LAYER = MECHANICS | {"master", "height_distribution", "variants", "passage", "verification"}
 LAYER |= {"plan"}
-BY_MODEL = {"tail", "film", "comparison", "sensitivity_runs", "plan"}
-DEFORMED = {"variants", "height_distribution"}
-LINES = LAYER | {"roughness", "patch"}
+BY_MODEL = {"tail", "film", "comparison", "sensitivity_runs", "sensitivity_responses", "plan"}
+DEFORMED = {"variants", "height_distribution", "sensitivity_responses"}
+LINES = LAYER | {"roughness", "patch", "sensitivity_responses"}
 SPECTRUM = LINES | {"surface", "film_response", "surface_response"}
 SLIDING = {"film", "film_response", "surface_response", "passage"}
 SENSITIVITY = "sensitivity_runs", "sensitivity", "record_bands", "verification"
@@ -171,7 +171,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
         ("contact_model", ["line", "surface"], BY_MODEL),
-        ("uncertainty.force.range", "+- 3 %", {"sensitivity_runs"}),
+        ("uncertainty.force.range", "+- 3 %", {"sensitivity_runs", "sensitivity_responses"}),
         ("load_sharing", "iterated", {"film"}),
         ("traces.1.temperature", "60 degC", {"trace", "surface_trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"surface_trace", "experiment", "electrical"}),

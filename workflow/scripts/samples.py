@@ -2,8 +2,10 @@
 
 from lube.pipeline.jobs import study_of_job
 from lube.stages import sensitivity_runs
-from lube.storage.netcdf import save
+from lube.storage.netcdf import load, save
 
 study = study_of_job(snakemake)
-batch = sensitivity_runs.make_batch(study, int(snakemake.wildcards.number))
-save(batch, snakemake.output[0], "sensitivity_runs_batch", study, [])
+files = snakemake.input.responses
+inputs = {"sensitivity_responses": load(path, "sensitivity_responses", study) for path in files}
+batch = sensitivity_runs.make_batch(study, inputs, int(snakemake.wildcards.number))
+save(batch, snakemake.output[0], "sensitivity_runs_batch", study, files)

@@ -1,0 +1,176 @@
+"""Responses of the film to waves of the roughness, interpolated over Moes' numbers.
+
+Every direct run has a film of its own, and to solve for its response as well would take seconds.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import CubicSpline
+
+from lube.ehl.film_formulas import formula
+from lube.ehl.response import at_wavelengths
+from lube.grid.film_responses import surface_responses, wave_responses
+from lube.grid.films import FilmGroups
+from lube.grid.levels import rolling
+from lube.sensitivity.conditions import OIL, Deviating
+from lube.sensitivity.samples import deviations, over_run
+from lube.study.uncertainty import deviating_lines
+from lube.types import Array
+
+RATIO = 1.35
+"""Largest ratio of neighbouring levels of M, and of L."""
+LEAST_LEVELS = 3
+NUMBERS = ["moes_load", "moes_material"]
+KINDS = {"line": ("response", wave_responses), "surface": ("surface_response", surface_responses)}
+"""Name of the response in a film dataset, and what solves for it, by contact model."""
+
+
+def solve_responses(
+    deviating: Deviating,
+    contact_models: Iterable[str],
+    unit: Array,
+    points: xr.Dataset,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Solve for the responses of films between the least and the greatest M and L of some runs.
+
+    Parameters
+    ----------
+    deviating : Deviating
+        The study, also for a typical oil.
+    contact_models : iterable of str
+        As in a study.
+    unit, points
+        The runs, as in `lube.sensitivity.runs.run`.
+    threads : int, optional
+        Threads that share the work; they do not change the results.
+
+    Returns
+    -------
+    xarray.Dataset
+        Variables of `lube.grid.film_responses` over `NUMBERS` and their own dimensions, NaN where a
+        film does not converge, and the half-width of the contact of their wavelengths.
+    """
+    values = over_run(deviations(deviating.factors, unit))
+    films = [film for _, film in deviating.films(values, points)]
+    numbers = np.concatenate([_numbers(film) for film in films], axis=1)
+    levels = dict(zip(NUMBERS, map(_levels, numbers), strict=True))
+    profiles = _groups(deviating, **levels).profiles.assign_coords(levels)
+    widths = np.concatenate([np.ravel(film["contact_half_width"]) for film in films])
+    half_width, ratio = np.nanmax(widths), np.nanmax(widths) / np.nanmin(widths)
+    highest = max(film["composite_rms_roughness"].max().item() for film in films)
+    contact = {
+        "contact_half_width": half_width,
+        "reduced_radius": deviating.study.rollers.reduced_radius,
+        # Positions reach as far as the narrowest contact needs them.
+        "composite_rms_roughness": ratio**2 * highest,
+    }
+    # Over the half-width, the longest wave is that in the narrowest contact.
+    longer = float(np.max(values.get("longest_wavelength", 0.0)))
+    shorter = float(np.min(values.get("shortest_wavelength", 0.0)))
+    waves = {"longest_wavelength": ratio * (1.0 + longer) - 1.0, "shortest_wavelength": shorter}
+    lines = deviating_lines(deviating.study.line_spec, waves)
+    slips = np.unique(slips_of(deviating, points))
+    slips = xr.DataArray(slips, {"slide_to_roll_ratio": slips}, ["slide_to_roll_ratio"])
+    given = profiles, xr.Dataset(contact), slips, lines, threads
+    tables = [KINDS[name][1](*given) for name in contact_models]
+    return xr.merge(tables, join="exact").assign(contact_half_width=half_width)
+
+
+def with_responses(
+    film: xr.Dataset, solved: xr.Dataset, contact_model: str, slips: Array
+) -> xr.Dataset:
+    """Add their responses to some films.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        Films over run, as from `Deviating.films`.
+    solved : xarray.Dataset
+        From `solve_responses`.
+    contact_model : str
+        As in a study.
+    slips : numpy.ndarray
+        Slide-to-roll ratio of each run.
+
+    Returns
+    -------
+    xarray.Dataset
+        The films, with the variables that `lube.grid.films.film_at` adds.
+    """
+    name, _ = KINDS[contact_model]
+    table = solved[f"{name}_real"] + 1j * solved[f"{name}_imaginary"]
+    table = table.transpose(*NUMBERS, "slide_to_roll_ratio", "roller", ..., "response_position")
+    weights = (
+        _weights(table[name].values, each)
+        for name, each in zip(NUMBERS, _numbers(film), strict=True)
+    )
+    known = table["wavelength"].values / solved["contact_half_width"].item()
+    angles = table["wave_angle"].values if "wave_angle" in table.dims else [0.0]
+    position, number = table["response_position"].values, table["slide_to_roll_ratio"].values
+    values = table.values.reshape(*table.shape[:4], len(angles), known.size, position.size)
+    widths = film["contact_half_width"].broadcast_like(film["film_thickness"]).values
+    found = []
+    for *both, width, slip in zip(*weights, widths, slips, strict=True):
+        response = np.einsum("m,l,ml...", *both, values[:, :, np.searchsorted(number, slip)])
+        wanted = known * solved["contact_half_width"].item() / width
+        by_angle = [
+            at_wavelengths(wanted, known, response[:, at], position, angle)
+            for at, angle in enumerate(angles)
+        ]
+        found.append(np.stack(by_angle, axis=1))
+    like = table[0, 0, 0].drop_vars([*NUMBERS, "slide_to_roll_ratio"])
+    found = np.reshape(found, (slips.size, *like.shape))
+    found = like.expand_dims(run=slips.size).copy(data=found)
+    return film.assign({f"{name}_real": found.real, f"{name}_imaginary": found.imag})
+
+
+def slips_of(deviating: Deviating, points: xr.Dataset) -> Array:
+    """Slide-to-roll ratio of each run at some operating points."""
+    own = xr.DataArray(rolling(deviating.study.slips))
+    return points.get("slide_to_roll_ratio", own).broadcast_like(points["force"]).values
+
+
+def _numbers(film):
+    """M and L of the films of some runs, as heating at the inlet thins them; shape (2, runs)."""
+    groups, factor = FilmGroups.of(film), film["inlet_shear_heating_factor"]
+
+    def film_at(speed):
+        return formula("moes").evaluate(groups.load, speed, groups.material)
+
+    # Heating acts as a lower speed, at which the film is thinner by the factor.
+    slower = factor
+    for _ in range(2):
+        thinner = film_at(slower * groups.speed) / film_at(groups.speed)
+        slower = slower ** (np.log(factor) / np.log(thinner))
+    slower = slower.where(factor != 1.0, 1.0)
+    numbers = film["moes_load"] / np.sqrt(slower), film["moes_material"] * slower**0.25
+    like = film["film_thickness"]
+    return np.stack([np.ravel(each.broadcast_like(like)) for each in numbers])
+
+
+def _levels(values):
+    """Choose levels of M or L between the least and the greatest value."""
+    ends = np.nanmin(values) * 0.999, np.nanmax(values) * 1.001
+    count = int(np.ceil(np.log(ends[1] / ends[0]) / np.log(RATIO))) + 1
+    return np.geomspace(*ends, max(count, LEAST_LEVELS))
+
+
+def _groups(deviating, moes_load, moes_material):
+    """Form the groups of films of a typical oil at all levels of M and L."""
+    study, oil = deviating.study, np.exp(deviating.oils.isel(lubricant=0).median())
+    modulus = 2.0 * study.rollers.reduced_modulus
+    material = oil[OIL[1]] * modulus
+    speed = 0.5 * (xr.DataArray(moes_material, dims="moes_material") / material) ** 4
+    load = xr.DataArray(moes_load, dims="moes_load") * np.sqrt(2.0 * speed)
+    meniscus = study.inlet_model["inlet_meniscus"]
+    meniscus = meniscus and meniscus / study.rollers.reduced_radius
+    return FilmGroups(load, speed, material, oil[OIL[0]], modulus, meniscus)
+
+
+def _weights(nodes, places):
+    """Weights of values at nodes for a cubic spline through them over the logarithm."""
+    spline = CubicSpline(np.log(nodes), np.eye(nodes.size))
+    return spline(np.clip(np.log(places), *np.log(nodes[[0, -1]])))
