@@ -108,3 +108,14 @@ def test_figure_38_draws_upper_limits_where_no_layer_breaks(files, tmp_path):
     arrows = [line.get_ydata() for line in axes.lines if line.get_marker() == CARETDOWNBASE]
     least, most = axes.get_ylim()
     assert arrows and 0.0 < least < 0.5e-3 and most > 1e-3
+
+
+def test_figure_16_cuts_no_mark_at_the_edge(files, tmp_path):
+    comparison = xr.load_dataset(files / "comparison.nc")
+    comparison["simulated_probability"][:] = 1.0
+    comparison["rms_deformation"] = comparison.film_thickness[0].drop_vars("film_formula")
+    comparison.to_netcdf(tmp_path / "comparison.nc")
+    paths = {"comparison": tmp_path / "comparison.nc"}
+    axes = draw(ROOT / "notebooks/fig16_comparison.ipynb", paths).axes[0]
+    (marks,) = [line for line in axes.lines if line.get_label() == "oil's response not linear"]
+    assert marks.get_xdata().size and not marks.get_clip_on()
