@@ -61,3 +61,8 @@ def test_no_load_on_the_line_is_stated_where_no_line_stands_for_the_surfaces(stu
         "% by asperities of the line, 12 % by asperities of the surface"
     )
     assert said["isotropic"][1]
+    thin["surface_load_share"] *= 10.0
+    found = remarks(thin, ground.line_spec, ground.rollers)
+    points = thin["film_thickness"].isel(film_formula=0).size
+    most = f"a tenth of the load, at {points} more than all of it, where the film"
+    assert any(f"the surfaces' asperities carry more than {most}" in line for line in found)
