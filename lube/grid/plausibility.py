@@ -125,7 +125,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "
         "boundary layer breaks, so contact will be underestimated": shortest > 5e-6,
         f"grid: {points:.3g} points in the shortest wave; the curvature of asperities needs "
-        "10": points < 10.0 * (1.0 - 1e-6),
+        "10": lines.follows_rolling and points < 10.0 * (1.0 - 1e-6),
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
         f"more than a tenth of the load, {more}where the film of smooth rollers is less certain": (
             loaded
