@@ -151,8 +151,10 @@ def level_markers(levels: npt.ArrayLike) -> dict[float, str]:
 
 
 def level_name(value: float, units: str) -> str:
-    """Level of an operating variable as text: ``86 r/min``, ``800 N``, ``40.5 °C``."""
-    digits = ".0f" if abs(value - round(value)) <= 0.004 * abs(value) else ".3g"
+    """Level of an operating variable as text: ``86 r/min``, ``112.5 N``, ``40.5 °C``."""
+    is_near_whole = abs(value - round(value)) <= 0.004 * abs(value)
+    is_short = value != round(value) and float(f"{value:.4g}") == value
+    digits = ".4g" if is_short else ".0f" if is_near_whole else ".3g"
     return f"{value:{digits}} {SYMBOLS.get(units, units)}"
 
 

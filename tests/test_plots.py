@@ -119,6 +119,20 @@ def test_units_are_spelt_alike_in_figures_and_text():
         assert plots.level_name(2.0, unit) == with_unit(2.0, unit)
 
 
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (600 / 7, "86 N"),
+        (112.5, "112.5 N"),
+        (80.2, "80.2 N"),
+        (71.34, "71.34 N"),
+        (1600.0, "1600 N"),
+    ],
+)
+def test_levels_are_named_by_their_digits_if_these_are_few(value, words):
+    assert plots.level_name(value, "N") == words
+
+
 @pytest.fixture
 def records():
     """Three records of two pairs of rollers, the last not at a level of force."""

@@ -95,12 +95,11 @@ def _values(datasets, variable, *kinds):
 
 def _share_range(datasets):
     """Range of the study's probabilities, or of their upper limits where no contact was seen."""
-    shares = datasets["tail"]["breakthrough_probability"].values
-    if datasets["tail"].attrs["remarks"]:
-        names = ("breakthrough_probability_mean", "breakthrough_probability_upper")
-        mean, upper = (_values(datasets, name, "contact", "master") for name in names)
-        shares = np.where(mean > 0.0, mean, upper)
-    return max(_spread(shares)[0], _RAREST), 1.6
+    counted = datasets["tail"].attrs["remarks"]
+    kinds, end = (("contact", "master"), "_mean") if counted else (("tail",), "")
+    names = (f"breakthrough_probability{each}" for each in (end, "_upper"))
+    mean, upper = (_values(datasets, name, *kinds) for name in names)
+    return max(_spread(np.where(mean > 0.0, mean, upper))[0], _RAREST), 1.6
 
 
 def _plot(x_axis_label, y_axis_label, **options):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from lube.grid.model_limits import deformed, rubbing
+from lube.grid.model_limits import deformed
 from lube.physics.excursions import mean_overlap
 from lube.units import with_unit
 
@@ -105,8 +105,9 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     loaded, overloaded = (
         int((share > limit).sum()) * lines.follows_rolling for limit in (0.1, 1.0)
     )
-    more = f"at {overloaded} more than all of it, " if overloaded else ""
-    rubs = int(rubbing(film).sum())
+    carried = film.get("surface_load_share", xr.zeros_like(films))
+    rubs, overrubs = (int((carried > limit).sum()) for limit in (0.1, 1.0))
+    more, most = (f"at {n} more than all of it, " if n else "" for n in (overloaded, overrubs))
     bends = int((deformed(film) | deformed(film, film)).sum())  # lines or surfaces
     found = {
         f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel 210 GPa": (
@@ -124,13 +125,15 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "
         "boundary layer breaks, so contact will be underestimated": shortest > 5e-6,
         f"grid: {points:.3g} points in the shortest wave; the curvature of asperities needs "
-        "10": points < 10.0 * (1.0 - 1e-6),
+        "10": lines.follows_rolling and points < 10.0 * (1.0 - 1e-6),
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
         f"more than a tenth of the load, {more}where the film of smooth rollers is less certain": (
             loaded
         ),
         f"load share: at {rubs} of {share.size} operating points the surfaces' asperities carry "
-        "more than a tenth of the load, where the film of smooth rollers is less certain": rubs,
+        f"more than a tenth of the load, {most}where the film of smooth rollers is less certain": (
+            rubs
+        ),
         f"roughness: at {bends} of {share.size} operating points the oil changes it by more than a "
         "tenth of the film, where the linear response is not valid": bends,
     }

@@ -61,7 +61,7 @@ def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None)
         return ""
     points = points.isel(point=known)
     order = np.argsort(points["breakthrough_probability_median"].values)
-    places = (np.array(_PLACES) * (order.size - 1)).round().astype(int)
+    places = np.unique((np.array(_PLACES) * (order.size - 1)).round().astype(int))[::-1]
     shown = points.isel(point=order[places]).reset_index("point")
     factors = [name for name in shown["factor"].values.tolist() if name != SEED]
     strength = shown["elementary_effect"].sel(factor=factors).mean("point")

@@ -250,6 +250,7 @@ def _held(film, contact, first):
         "small": model_limits.LARGEST_DEFORMATION,
         "surface_share": None if share is None else share.max().item(),
         "rubbing": int(model_limits.rubbing(film).sum()),
+        "overrubbed": 0 if share is None else int((share > 1.0).sum()),
         "little": model_limits.LARGEST_SHARE,
     }
 

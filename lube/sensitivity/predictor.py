@@ -122,12 +122,13 @@ class Predictor:
             scaled = missed / known.loc[list(at.itertuples(index=False, name=None))].to_numpy()
             absolute.append(np.sqrt(np.mean(missed**2)))
             relative.append(np.sqrt(np.mean(scaled**2)))
-            counts.append((left_out.size, left_out.sum()))
+            fitted = np.isfinite(own["breakthrough_probability"].values).all(axis=1)
+            counts.append((fitted.sum(), left_out.sum()))
         return {
             "surrogate_model": ("surrogate_model", [", ".join(model) for model in self.surrogates]),
             "surrogate_error": ("surrogate_model", six_digits(np.array(absolute))),
             "relative_surrogate_error": ("surrogate_model", six_digits(np.array(relative))),
-            "run_count": ("surrogate_model", [every for every, _ in counts]),
+            "run_count": ("surrogate_model", [fitted for fitted, _ in counts]),
             "left_out_count": ("surrogate_model", [left_out for _, left_out in counts]),
             "film_surrogate_error": ((), six_digits(np.array(self.film_error)).item()),
         }

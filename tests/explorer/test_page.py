@@ -192,6 +192,18 @@ def test_every_control_moves_and_every_number_is_the_datasets(visit, explored, p
         assert page.inner_text("#bands") == "; ".join(bands if is_assumed else bands[:1])
 
 
+def test_a_probability_of_zero_is_drawn_by_its_upper_limit(visit, explored, tmp_path):
+    tail = explored["tail"].copy(deep=True)
+    for end, value in (("", 0.0), ("_lower", 0.0), ("_upper", 0.02)):
+        tail[f"breakthrough_probability{end}"][:] = value
+    path = tmp_path / "zero.html"
+    path.write_text(explorer_page(explored | {"tail": tail}, BAND), encoding="utf-8")
+    page = visit(path)
+    assert drawn(page, "chosen")["limit"] == [0.02] and drawn(page, "chosen")["mean"] == [None]
+    assert "no contact seen" in page.inner_text(".key")
+    assert said(page)["interval"] == "of the time; 95 % interval 0\u00a0% to 2\u00a0%"
+
+
 def test_without_importance_sampling_the_realisations_are_counted(visit, counted_file):
     page = visit(counted_file, "#temperature=80")
     assert said(page)["probability"] == "41.2\u00a0%"
@@ -305,10 +317,10 @@ def test_of_rollers_without_a_line_the_page_shows_contacts_along_the_rollers(
     path.write_text(explorer_page(study | {"surface_trace": traces}, BAND), encoding="utf-8")
     page = visit(path)
     point = traces.isel(operating_point=0)
-    assert f"at {rounded(point['contacts'].values.mean())} places at once" in page.inner_text(
-        "body"
-    )
-    lengths = 1e6 * point["contact_length"].values
+    touching, lengths = point["contacts"].values, 1e6 * point["contact_length"].values
+    words = f"at {rounded(touching.mean())} places at once on average, and "
+    words += f"{percent(np.mean(lengths > 0.0))} of this time a boundary layer is broken"
+    assert words in page.inner_text("body")
     np.testing.assert_allclose(drawn(page, "whole")["length"], lengths, rtol=1e-15)
     assert not page.locator("#close-up").is_visible()
     assert "Contact of: surface" in page.inner_text("body")

@@ -61,3 +61,19 @@ def test_no_load_on_the_line_is_stated_where_no_line_stands_for_the_surfaces(stu
         "% by asperities of the line, 12 % by asperities of the surface"
     )
     assert said["isotropic"][1]
+    thin["surface_load_share"] *= 10.0
+    found = remarks(thin, ground.line_spec, ground.rollers)
+    points = thin["film_thickness"].isel(film_formula=0).size
+    most = f"a tenth of the load, at {points} more than all of it, where the film"
+    assert any(f"the surfaces' asperities carry more than {most}" in line for line in found)
+
+
+def test_the_grid_matters_only_where_a_line_stands_for_the_surfaces(study, film):
+    short = {"shortest_wavelength": 8.0 * study.line_spec.spacing}
+    for lay, is_said in ((1.0, True), (5.0, False)):
+        update = short | {"lay_ratio": lay, "lay_angle": 0.0}
+        roughness = study.roughness.model_copy(update=update)
+        update = {"roughness": roughness, "contact_model": ("surface",)}
+        lines = study.model_copy(update=update).line_spec
+        found = remarks(film, lines, study.rollers)
+        assert any(line.startswith("grid: 8 points") for line in found) == is_said

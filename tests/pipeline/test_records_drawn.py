@@ -1,9 +1,10 @@
-"""Figures show records at their own conditions, and operating points of one temperature alone."""
+"""Figures show records at their own conditions, bare limits, and one temperature alone."""
 
 import numpy as np
 import pytest
 import xarray as xr
 from figure_checks import draw
+from matplotlib.markers import CARETDOWNBASE
 from repository import ROOT
 
 from lube.plots import NOT_POINTS
@@ -79,3 +80,42 @@ def test_one_temperature_alone_has_markers_where_others_have_curves(files, tmp_p
     for number, marker in (("fig02_film", "s"), ("fig07_probability", "_")):
         figure = draw(ROOT / f"notebooks/{number}.ipynb", paths)
         assert marker in {line.get_marker() for axes in figure.axes for line in axes.lines}
+
+
+def test_figure_17_draws_limits_of_a_film_that_has_no_value(files, tmp_path):
+    gauge = xr.load_dataset(files / "gauge.nc")
+    for end, value in (("", np.nan), ("_lower", 0.5), ("_upper", 2.5)):
+        gauge[f"gauged_lambda_ratio{end}"][0] = value
+    gauge.to_netcdf(tmp_path / "gauge.nc")
+    figure = draw(ROOT / "notebooks/fig17_gauge.ipynb", {"gauge": tmp_path / "gauge.nc"})
+    bars = [bar.tolist() for lines in figure.axes[0].collections for bar in lines.get_segments()]
+    place = gauge.lambda_ratio[0, 0].item()
+    assert [[place, 0.5], [place, 2.5]] in bars
+
+
+def test_figure_38_draws_upper_limits_where_no_layer_breaks(files, tmp_path):
+    film = xr.load_dataset(files / "film.nc")
+    film["surface_load_share"] = 0.0 * film.lambda_ratio
+    film.to_netcdf(tmp_path / "film.nc")
+    tail = xr.load_dataset(files / "tail.nc")
+    tail["breakthrough_probability"][:] = tail["breakthrough_probability_lower"][:] = 0.0
+    tail["breakthrough_probability_upper"][:] = 1e-3
+    lines = [name for name in tail if "asymptote" not in name]
+    tail = tail.assign(tail[lines].expand_dims(contact_model=["surface"]))
+    tail.to_netcdf(tmp_path / "tail.nc")
+    paths = {name: tmp_path / f"{name}.nc" for name in ("film", "tail")}
+    axes = draw(ROOT / "notebooks/fig38_surfaces_alone.ipynb", paths).axes[0]
+    arrows = [line.get_ydata() for line in axes.lines if line.get_marker() == CARETDOWNBASE]
+    least, most = axes.get_ylim()
+    assert arrows and 0.0 < least < 0.5e-3 and most > 1e-3
+
+
+def test_figure_16_cuts_no_mark_at_the_edge(files, tmp_path):
+    comparison = xr.load_dataset(files / "comparison.nc")
+    comparison["simulated_probability"][:] = 1.0
+    comparison["rms_deformation"] = comparison.film_thickness[0].drop_vars("film_formula")
+    comparison.to_netcdf(tmp_path / "comparison.nc")
+    paths = {"comparison": tmp_path / "comparison.nc"}
+    axes = draw(ROOT / "notebooks/fig16_comparison.ipynb", paths).axes[0]
+    (marks,) = [line for line in axes.lines if line.get_label() == "oil's response not linear"]
+    assert marks.get_xdata().size and not marks.get_clip_on()

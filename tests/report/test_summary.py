@@ -203,7 +203,9 @@ def test_points_whose_surfaces_carry_much_of_the_load_are_counted(study, results
     share = (film["temperature"] == 80.0) * 0.3 + 0.0 * film["film_thickness"]
     text = findings(study, results | {"film": film.assign(surface_load_share=share)})
     assert "Asperities of the surfaces carry up to 30 % of the load, although the film" in text
-    assert "more than 10 % at 4 of the 16 operating points" in text
+    assert "more than 10 % at 4 of the 16 operating points.\n" in text
+    rough = findings(study, results | {"film": film.assign(surface_load_share=4.0 * share)})
+    assert "more than 10 % at 4 of the 16 operating points, more than all of it at 4.\n" in rough
     assert "% of the load, although the film is that of the whole load.\n" in text  # of the line
     shared = study.model_copy(update={"load_sharing": "iterated"})
     text = findings(shared, results | {"film": film.assign(surface_load_share=share)})

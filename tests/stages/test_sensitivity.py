@@ -97,6 +97,13 @@ def test_runs_without_breakthroughs_are_refused_in_one_line(study, direct):
         sensitivity.make(study, {"sensitivity_runs": direct.assign({PROBABILITY: probability})})
 
 
+def test_runs_without_breakthroughs_are_not_counted_as_fitted(study, direct):
+    probability = direct[PROBABILITY].where(direct["run"] % 4 > 0)
+    found = sensitivity.make(study, {"sensitivity_runs": direct.assign({PROBABILITY: probability})})
+    assert found["run_count"].values.tolist() == [96, 96]
+    assert found["left_out_count"].values.tolist() == [24, 24]
+
+
 def test_runs_leave_xarrays_options_as_they_were(direct):
     assert xr.get_options()["keep_attrs"] == "default"
     assert xr.get_options()["arithmetic_join"] == "inner"

@@ -87,15 +87,16 @@ const marked = (point) => Object.keys(marks).filter((name) => isMarked(name, poi
 // One row of a source of operating points
 function row(point, along) {
     const found = probability(point);
-    const { mean, lower, upper, seen } = found;
+    const { mean, lower, upper } = found;
+    const seen = mean > 0;
     return {
         ...point,
         x: along ? levels[along].values[point[along]] : NaN,
         film: 1e6 * at("film_thickness", point),
-        mean: seen ? positive(mean) : NaN,
+        mean: positive(mean),
         lower: seen ? Math.max(lower, 1e-30) : NaN, // the axis ends far above
         upper: seen ? upper : NaN,
-        limit: seen ? NaN : upper,
+        limit: seen ? NaN : positive(upper),
         lambda: at("lambda_ratio", point),
         width: 2e6 * at("contact_half_width", point),
         M: at("moes_load", point),
@@ -288,9 +289,9 @@ function traceText(trace) {
     const crossing = `An asperity takes ${rounded(1e3 * trace.crossing)} ms to cross the contact. `;
     if (!trace.close) {
         return (
-            `One pair of surfaces, followed over ${rounded(1e3 * trace.way)} mm of rolling: in contact ${percent(trace.share)} of this time, ` +
-            `at ${rounded(trace.contacts)} places at once on average. ${crossing}` +
-            `Drawn: the sum of the contacts' diameters${content.conducts ? ", and the resistance of the contacts in parallel" : ""}.`
+            `One pair of surfaces, followed over ${rounded(1e3 * trace.way)} mm of rolling: they touch at ${rounded(trace.contacts)} ` +
+            `places at once on average, and ${percent(trace.share)} of this time a boundary layer is broken. ${crossing}` +
+            `Drawn, of contacts with a broken layer: the sum of their diameters${content.conducts ? ", and their resistance in parallel" : ""}.`
         );
     }
     const close = trace.close.steps > 1 ? `within every ${trace.close.steps}` : "in every step";
