@@ -320,7 +320,7 @@ def solve(
     return profile
 
 
-def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
+def on_nodes(profile: FilmProfile, nodes: Array, is_damped: bool = True) -> FilmProfile:
     """Solve again for a film, on other nodes.
 
     Parameters
@@ -329,6 +329,8 @@ def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
         The film.
     nodes : numpy.ndarray, shape (n,)
         Positions over the half-width, rising, with the same ends as the film's nodes.
+    is_damped : bool, optional
+        As in `lube.ehl.reynolds.DiscreteContact`.
 
     Returns
     -------
@@ -341,7 +343,8 @@ def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
         If the iteration does not converge.
     """
     pressure = np.interp(nodes, profile.nodes, profile.pressure)
-    return _settle(profile.contact, nodes, pressure, profile.central_gap, profile.steps)
+    film, steps = profile.central_gap, profile.steps
+    return _settle(profile.contact, nodes, pressure, film, steps, is_damped)
 
 
 def one_blas_thread() -> AbstractContextManager:
@@ -384,11 +387,11 @@ def profiles_of(*groups: Values, meniscus: float | None = None) -> Array:
     return np.vectorize(solved, otypes=[object])(*groups)
 
 
-def _settle(contact, nodes, pressure, film, steps):
+def _settle(contact, nodes, pressure, film, steps, is_damped=True):
     """Let the film settle on a mesh, from a guess of the pressure and the central film."""
     # A step that overflows is too large; it is repeated.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), one_blas_thread():
-        discrete = DiscreteContact(contact, nodes)
+        discrete = DiscreteContact(contact, nodes, is_damped=is_damped)
         pressure = pressure * (HERTZ_LOAD / (discrete.weight @ pressure))
         gap = discrete.gap(pressure, 0.0)
         # Lifted where the guess would let the rollers touch.

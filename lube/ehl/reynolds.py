@@ -74,6 +74,9 @@ class DiscreteContact:
         Positions X of the nodes, rising.
     across : float, optional
         As in `lube.ehl.deflection.deflection_matrix`, for the deflection.
+    is_damped : bool, optional
+        Whether oscillations of the pressure are damped. Those of roughness that a coarse mesh
+        hardly resolves would be, too.
 
     Attributes
     ----------
@@ -81,14 +84,15 @@ class DiscreteContact:
         Flow between the nodes that damps oscillations of the pressure, by the pressures.
     """
 
-    def __init__(self, contact, nodes, across=0.0):
+    def __init__(self, contact, nodes, across=0.0, is_damped=True):
         self.contact, self.nodes = contact, nodes
         self.step = np.diff(nodes)
         self.middle = 0.5 * (nodes[1:] + nodes[:-1])
         self.deflection = deflection_matrix(self.middle, nodes, across)
         # Weights of the trapezoidal rule.
         self.weight = 0.5 * (np.append(self.step, 0.0) + np.append(0.0, self.step))
-        self.damping = _DAMPING * contact.film_guess * _fifth_differences(nodes)
+        scale = is_damped * _DAMPING * contact.film_guess
+        self.damping = scale * _fifth_differences(nodes)
 
     def gap(self, pressure: Array, offset: float) -> Array:
         """Evaluate the scaled gap H midway between the nodes."""

@@ -113,8 +113,8 @@ class RoughPassage:
         inlet = profile.nodes[profile.nodes < -REACH]
         narrow = inlet[profile.scaled_gap(inlet) < highest]
         reach = max(REACH, -narrow.min(initial=0.0))
-        smooth = on_nodes(profile, passage_nodes(profile, step, reach))
-        self._discrete = DiscreteContact(smooth.contact, smooth.nodes)
+        smooth = on_nodes(profile, passage_nodes(profile, step, reach), is_damped=False)
+        self._discrete = DiscreteContact(smooth.contact, smooth.nodes, is_damped=False)
         self.position, self.spacing = self._discrete.middle, self._discrete.step
         self._late = 0.5 * (1.0 + min(step / _DAMPING, 1.0))
         self._squeeze = 0.5 * self._discrete.weight[1:-1] / step
@@ -125,7 +125,6 @@ class RoughPassage:
         self._smooth = self.pressure = smooth.pressure
         self._offset, self.contact_pressure = smooth.offset, np.zeros(smooth.nodes.size - 1)
         self._flow = self._discrete.flow(smooth.pressure, smooth.offset)
-        self._damping = -self._late * np.diff(self._discrete.damping, axis=0)[:, 1:-1]
         self.gap, self._film, self._factors = self._flow.gap, None, None
 
     @property
@@ -211,7 +210,7 @@ class RoughPassage:
             + late * (flow.by_left[1:] - flow.by_right[:-1]),
             behind * flow.drag_by_node[1:] + late * flow.by_right[1:],
         )
-        derivatives = _Derivatives(discrete, by_gap, by_node, self._damping)
+        derivatives = _Derivatives(discrete, by_gap, by_node)
         in_film = pressure[1:-1] > residual / np.abs(derivatives.own)
         # Complementary: a closed gap under pressure, or an open one without.
         touching = solid + self._closed - gap > 0.0
@@ -269,22 +268,18 @@ class _Derivatives:
     by_node : tuple of numpy.ndarray
         Derivatives at constant gap with respect to the pressures at the nodes before, at the nodes
         themselves, and at the nodes behind.
-    damping : numpy.ndarray
-        Derivatives with respect to all inner pressures of the flow that damps their oscillations.
     """
 
     discrete: DiscreteContact
     by_gap: tuple[Array, Array]
     by_node: tuple[Array, Array, Array]
-    damping: Array
 
     @property
     def own(self):
         """Derivatives with respect to the pressure at the node itself."""
         inner, deflection = np.arange(self.by_gap[0].size), self.discrete.deflection
         by_gap = self.by_gap[0] * deflection[inner + 1, inner + 1]
-        by_gap += self.by_gap[1] * deflection[inner, inner + 1]
-        return by_gap + self.by_node[1] + np.diagonal(self.damping)
+        return by_gap + self.by_gap[1] * deflection[inner, inner + 1] + self.by_node[1]
 
     def opened(self, by):
         """Differentiate with respect to changes of the gap: the columns of `by`, cell by cell."""
@@ -297,7 +292,6 @@ class _Derivatives:
         deflection = self.discrete.deflection[:, 1:-1]
         np.multiply(behind[:, None], deflection[nodes + 1], out=rows[:, :-1])
         rows[:, :-1] += before[:, None] * deflection[nodes]
-        rows[:, :-1] += self.damping[nodes]
         rows[:, -1] = behind + before
         number = np.arange(nodes.size)
         for shift, values in zip((-1, 0, 1), self.by_node, strict=True):

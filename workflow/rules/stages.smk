@@ -92,7 +92,7 @@ if STUDY.has("sensitivity_runs"):
     rule samples:
         """Batches of samples of all that is uncertain, which the sensitivity study joins."""
         input:
-            responses=[result("sensitivity_responses.nc")] * STUDY.has("sensitivity_responses"),
+            **{kind: result(f"{kind}.nc") for kind in ("sensitivity_responses",) if STUDY.has(kind)},
             # Their values are parameters.
             records=ancient(FILES.record_files()),
             sources=script_sources("samples"),

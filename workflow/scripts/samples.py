@@ -5,7 +5,7 @@ from lube.stages import sensitivity_runs
 from lube.storage.netcdf import load, save
 
 study = study_of_job(snakemake)
-files = snakemake.input.responses
-inputs = {"sensitivity_responses": load(path, "sensitivity_responses", study) for path in files}
+files = {kind: snakemake.input[kind] for kind in ("sensitivity_responses",) if study.has(kind)}
+inputs = {kind: load(path, kind, study) for kind, path in files.items()}
 batch = sensitivity_runs.make_batch(study, inputs, int(snakemake.wildcards.number))
-save(batch, snakemake.output[0], "sensitivity_runs_batch", study, files)
+save(batch, snakemake.output[0], "sensitivity_runs_batch", study, [*files.values()])
