@@ -135,7 +135,8 @@ def slips_of(deviating: Deviating, points: xr.Dataset) -> Array:
 
 def _numbers(film):
     """M and L of the films of some runs, as heating at the inlet thins them; shape (2, runs)."""
-    groups, factor = FilmGroups.of(film), film["inlet_shear_heating_factor"]
+    groups = FilmGroups.of(film)
+    factor = film["inlet_shear_heating_factor"].clip(max=1.0 - 1e-9)
 
     def film_at(speed):
         return formula("moes").evaluate(groups.load, speed, groups.material)
@@ -145,7 +146,6 @@ def _numbers(film):
     for _ in range(2):
         thinner = film_at(slower * groups.speed) / film_at(groups.speed)
         slower = slower ** (np.log(factor) / np.log(thinner))
-    slower = slower.where(factor != 1.0, 1.0)
     numbers = film["moes_load"] / np.sqrt(slower), film["moes_material"] * slower**0.25
     like = film["film_thickness"]
     return np.stack([np.ravel(each.broadcast_like(like)) for each in numbers])
