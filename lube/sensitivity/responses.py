@@ -128,7 +128,7 @@ def with_responses(
 
 
 def slips_of(deviating: Deviating, points: xr.Dataset) -> Array:
-    """Slide-to-roll ratio of each run at some operating points."""
+    """Return the slide-to-roll ratio of each run at some operating points."""
     own = xr.DataArray(rolling(deviating.study.slips))
     return points.get("slide_to_roll_ratio", own).broadcast_like(points["force"]).values
 

@@ -32,7 +32,8 @@ def test_points_without_a_film_are_left_out():
     unknown = found["elementary_effect"].where(found["force"] < 300.0)
     rows = rests_on(STUDY, found.assign(elementary_effect=unknown)).splitlines()
     assert "400 N" not in "".join(rows) and "200 N" in "".join(rows)
-    assert sum(row.count("| 100 N, 85.71") for row in rows) == 1  # of two points each once
+    # The table has a column for each of the two points, and none twice.
+    assert sum(row.count("| 100 N, 85.71") for row in rows) == 1
     nothing = found.assign(elementary_effect=xr.full_like(unknown, np.nan))
     assert rests_on(STUDY, nothing) == ""
 
