@@ -7,6 +7,7 @@ is the mean of that to spikes at all of these places.
 
 import itertools
 import logging
+import math
 
 import numpy as np
 import xarray as xr
@@ -87,7 +88,7 @@ def wave_responses(
     """
     angles = np.zeros(1)
     response, error = _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads)
-    heights = _line_heights(spec, response["wavelength"].values)[:, None]
+    heights = line_heights(spec, response["wavelength"].values)
     deformation = _deformation(response, heights)
     response, error = (each.isel(wave_angle=0, drop=True) for each in (response, error))
     values = response.real, response.imag, error, deformation
@@ -112,7 +113,7 @@ def surface_responses(
         response_position; NaN where the film is not known.
     """
     response, _ = _solved(solved, contact, slide_to_roll_ratio, spec, ANGLES, threads)
-    heights = _surface_heights(spec, ANGLES, response["wavelength"].values)
+    heights = surface_heights(spec, response["wavelength"].values)
     values = response.real, response.imag, _deformation(response, heights)
     return xr.Dataset(dict(zip(SURFACE_VARIABLES, values, strict=True)))
 
@@ -168,8 +169,21 @@ def _deformation(response, heights):
     return one.copy(data=rms)
 
 
-def _surface_heights(spec, angles, wavelengths):
-    """Distribute the mean square height of each surface over the angles and wavelengths."""
+def surface_heights(spec, wavelengths: Array) -> Array:
+    """Distribute the mean square height of each surface over angles and wavelengths.
+
+    Parameters
+    ----------
+    spec : lube.study.line_spec.LineSpec
+        The lines that the surfaces stand behind.
+    wavelengths : numpy.ndarray, shape (w,)
+        Wavelengths, m, falling.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (2, a, w), m^2, at `ANGLES`.
+    """
     psi = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
     shares = []
     for roller, line in enumerate(spec.lines):
@@ -177,20 +191,19 @@ def _surface_heights(spec, angles, wavelengths):
         power, edges = np.histogram(-np.log(length), LENGTHS, weights=power)
         # The waves of the isotropic surface run in all directions; see `lube.surfaces.lay`.
         along, across = stretched(1.0, psi, line.lay_ratio, line.lay_angle)
-        angle = np.degrees(np.arctan2(np.abs(across), np.abs(along)))
+        angle = np.degrees(np.arctan2(np.abs(across), np.abs(along)))[:, None]
         places = 0.5 * (edges[1:] + edges[:-1]) + np.log(np.hypot(along, across))[:, None]
-        weights = _weights(angle, angles), _weights(places, -np.log(wavelengths))
-        shares.append(np.einsum("an,wnl,l->aw", *weights, power) / DIRECTIONS)
-    return np.array(shares)
+        shares.append(_spread(power, (angle, ANGLES), (places, -np.log(wavelengths))))
+    return np.array(shares) / DIRECTIONS
 
 
-def _line_heights(spec, wavelengths):
-    """Distribute the mean square height of each line over the wavelengths, which fall."""
+def line_heights(spec, wavelengths: Array) -> Array:
+    """Distribute the mean square height of each line as in `surface_heights`, at the angle 0."""
     shares = []
     for roller in (0, 1):
         length, power = line_waves(spec, roller)
-        shares.append(np.einsum("wk,k", _weights(-np.log(length), -np.log(wavelengths)), power))
-    return np.array(shares)
+        shares.append(_spread(power, (-np.log(length), -np.log(wavelengths))))
+    return np.array(shares)[:, None]
 
 
 def line_waves(spec, roller: int, amplitudes_of=wave_amplitudes) -> Pair:
@@ -200,9 +213,22 @@ def line_waves(spec, roller: int, amplitudes_of=wave_amplitudes) -> Pair:
     return length, amplitudes**2 / 2.0
 
 
-def _weights(places, nodes):
-    """Weights of values at nodes for linear interpolation at some places, nodes first."""
-    return np.array([np.interp(places, nodes, each) for each in np.eye(nodes.size)])
+def _spread(power, *axes):
+    """Distribute power at places among the nodes of each axis, as in linear interpolation."""
+    shape, ends = [nodes.size for _, nodes in axes], []
+    for places, nodes in axes:
+        right = np.clip(np.searchsorted(nodes, places), 1, nodes.size - 1)
+        part = (places - nodes[right - 1]) / (nodes[right] - nodes[right - 1])
+        part = np.clip(part, 0.0, 1.0)
+        ends.append([(right - 1, 1.0 - part), (right, part)])
+    found = np.zeros(np.prod(shape))
+    for corner in itertools.product(*ends):
+        at, weights = zip(*corner, strict=True)
+        each = np.broadcast_arrays(*at)
+        weight = np.broadcast_to(math.prod(weights) * power, each[0].shape)
+        number = np.ravel_multi_index([one.ravel() for one in each], shape)
+        found += np.bincount(number, weight.ravel(), found.size)
+    return found.reshape(shape)
 
 
 def _of_film(profile, wavelengths, speeds, positions, angle):

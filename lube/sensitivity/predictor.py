@@ -1,6 +1,5 @@
 """Probabilities of many samples at all operating points, by surrogates of films and contact."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import chain
 
@@ -13,8 +12,9 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_sum, models
 from lube.sensitivity.samples import deviations, over_run, quantiles
-from lube.sensitivity.shape import effective_ratio
+from lube.sensitivity.shape import EffectiveRatio
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
+from lube.threads import on_threads
 from lube.types import Array, Pair
 
 AT_ONCE = 400
@@ -50,18 +50,20 @@ class Predictor:
         the viscosity; None if the study does not choose it.
     film_error : float
         Its rms error at runs that were left out of the fit.
-    effective : callable or None
-        Lambda ratios of films with a shape; None if the study has none.
+    effective : dict
+        Lambda ratios that contact sees, of each model whose gap is not plain.
     """
 
     deviating: Deviating
     surrogates: dict[Model, Surrogate]
     film: Interpolant | None
     film_error: float
-    effective: Callable | None
+    effective: dict[Model, EffectiveRatio]
 
     @classmethod
-    def of(cls, deviating: Deviating, runs: xr.Dataset) -> "Predictor":
+    def of(
+        cls, deviating: Deviating, runs: xr.Dataset, responses: xr.Dataset | None = None
+    ) -> "Predictor":
         """Fit surrogates to the runs of all models.
 
         Parameters
@@ -70,17 +72,24 @@ class Predictor:
             The study.
         runs : xarray.Dataset
             A ``sensitivity_runs`` dataset.
+        responses : xarray.Dataset, optional
+            The ``sensitivity_responses`` dataset, if the oil answers the roughness in some runs.
 
         Raises
         ------
         DataError
             If the boundary layer breaks in fewer than `LEAST_RUNS` runs of a model.
         """
-        surrogates, effective = {}, _effective(deviating, runs)
+        surrogates = {}
+        effective = {
+            model: EffectiveRatio.of(deviating, runs, model.gap, model.contact_model, responses)
+            for model in models(deviating)
+            if not model.gap.is_uniform
+        }
         for model in sorted(models(deviating), key=Model.deviations):
             own = _of_model(runs, model)
             values = over_run(deviations(deviating.factors, own["factor_quantile"].values))
-            variables = groups(deviating, own, values, model.gap, effective)
+            variables = groups(deviating, own, values, model.gap, effective.get(model))
             variables = variables.transpose("group", "run").values
             found = own["breakthrough_probability"].transpose("run", "seed").values
             broken = np.count_nonzero(np.isfinite(found).all(axis=1))
@@ -133,7 +142,9 @@ class Predictor:
             "film_surrogate_error": ((), six_digits(np.array(self.film_error)).item()),
         }
 
-    def log_probability(self, unit: Array, points: xr.Dataset | None = None) -> Array:
+    def log_probability(
+        self, unit: Array, points: xr.Dataset | None = None, threads: int = 1
+    ) -> Array:
         """Predict the logarithm of the probability of breakthrough.
 
         Parameters
@@ -144,6 +155,8 @@ class Predictor:
         points : xarray.Dataset, optional
             ``lubricant``, ``temperature``, ``speed`` and ``force`` over point; by default all
             operating points of the study.
+        threads : int, optional
+            Threads that share the work; they do not change the results.
 
         Returns
         -------
@@ -152,7 +165,11 @@ class Predictor:
         """
         parts = np.array_split(unit, -(-len(unit) // AT_ONCE))
         points = stacked_points(self.deviating) if points is None else points
-        return np.concatenate([self._of_part(part, points) for part in parts])
+        # Options of xarray are those of all threads: set here, none changes them for the others.
+        with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+            return np.concatenate(
+                on_threads(lambda part: self._of_part(part, points), parts, threads)
+            )
 
     def draws(self, points: xr.Dataset, samples: int = 1024) -> Pair:
         """Draw probabilities at some operating points, and for each a place among pairs of rollers.
@@ -188,7 +205,7 @@ class Predictor:
                 continue
             own = {name: each.isel(run=some) for name, each in values.items()}
             here = film.isel(run=some)
-            variables = groups(deviating, here, own, model.gap, self.effective)
+            variables = groups(deviating, here, own, model.gap, self.effective.get(model))
             variables = variables.transpose("group", "run", "point").values
             shape = variables.shape[1:]
             logarithm = surrogate.log_probability(variables.reshape(len(variables), -1))
@@ -225,15 +242,6 @@ def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> 
             choices = getattr(deviating.study.uncertainty, name).choices
             chosen &= numbers[name] == choices.index(choice)
     return chosen
-
-
-def _effective(deviating, runs):
-    """Table of the effective lambda ratios, over the films of the runs and some more."""
-    if not any(model.gap.has_shape for model in models(deviating)):
-        return None
-    names = "moes_load", "moes_material", "lambda_ratio"
-    ranges = [(runs[name].min().item(), runs[name].max().item()) for name in names]
-    return effective_ratio(deviating, np.array(ranges) * (0.9, 1.1))
 
 
 def _film(deviating, runs):

@@ -11,7 +11,12 @@ from scipy.interpolate import CubicSpline
 
 from lube.ehl.film_formulas import formula
 from lube.ehl.response import at_wavelengths
-from lube.grid.film_responses import surface_responses, wave_responses
+from lube.grid.film_responses import (
+    line_heights,
+    surface_heights,
+    surface_responses,
+    wave_responses,
+)
 from lube.grid.films import FilmGroups
 from lube.grid.levels import rolling
 from lube.sensitivity.conditions import OIL, Deviating
@@ -19,12 +24,16 @@ from lube.sensitivity.samples import deviations, over_run
 from lube.study.uncertainty import deviating_lines
 from lube.types import Array
 
-RATIO = 1.35
-"""Largest ratio of neighbouring levels of M, and of L."""
-LEAST_LEVELS = 3
 NUMBERS = ["moes_load", "moes_material"]
-KINDS = {"line": ("response", wave_responses), "surface": ("surface_response", surface_responses)}
-"""Name of the response in a film dataset, and what solves for it, by contact model."""
+RATIOS = 1.35, 1.8
+"""Largest ratios of neighbouring levels of M, and of L, with which responses change less."""
+LEAST_LEVELS = 3
+KINDS = {
+    "line": ("response", wave_responses, line_heights),
+    "surface": ("surface_response", surface_responses, surface_heights),
+}
+"""By contact model: name of the response in a film dataset, and functions that solve for it, and
+that distribute the mean square heights among the waves."""
 
 
 def solve_responses(
@@ -56,8 +65,8 @@ def solve_responses(
     values = over_run(deviations(deviating.factors, unit))
     films = [film for _, film in deviating.films(values, points)]
     numbers = np.concatenate([_numbers(film) for film in films], axis=1)
-    levels = dict(zip(NUMBERS, map(_levels, numbers), strict=True))
-    profiles = _groups(deviating, **levels).profiles.assign_coords(levels)
+    levels = dict(zip(NUMBERS, map(_levels, numbers, RATIOS), strict=True))
+    profiles = typical_films(deviating, **levels)
     widths = np.concatenate([np.ravel(film["contact_half_width"]) for film in films])
     half_width, ratio = np.nanmax(widths), np.nanmax(widths) / np.nanmin(widths)
     highest = max(film["composite_rms_roughness"].max().item() for film in films)
@@ -100,21 +109,17 @@ def with_responses(
     xarray.Dataset
         The films, with the variables that `lube.grid.films.film_at` adds.
     """
-    name, _ = KINDS[contact_model]
-    table = solved[f"{name}_real"] + 1j * solved[f"{name}_imaginary"]
-    table = table.transpose(*NUMBERS, "slide_to_roll_ratio", "roller", ..., "response_position")
+    table, known = response_table(solved, contact_model)
     weights = (
         _weights(table[name].values, each)
         for name, each in zip(NUMBERS, _numbers(film), strict=True)
     )
-    known = table["wavelength"].values / solved["contact_half_width"].item()
-    angles = table["wave_angle"].values if "wave_angle" in table.dims else [0.0]
-    position, number = table["response_position"].values, table["slide_to_roll_ratio"].values
-    values = table.values.reshape(*table.shape[:4], len(angles), known.size, position.size)
+    angles, position = table["wave_angle"].values, table["response_position"].values
+    number = table["slide_to_roll_ratio"].values
     widths = film["contact_half_width"].broadcast_like(film["film_thickness"]).values
     found = []
     for *both, width, slip in zip(*weights, widths, slips, strict=True):
-        response = np.einsum("m,l,ml...", *both, values[:, :, np.searchsorted(number, slip)])
+        response = np.einsum("m,l,ml...", *both, table.values[:, :, np.searchsorted(number, slip)])
         wanted = known * solved["contact_half_width"].item() / width
         by_angle = [
             at_wavelengths(wanted, known, response[:, at], position, angle)
@@ -122,9 +127,25 @@ def with_responses(
         ]
         found.append(np.stack(by_angle, axis=1))
     like = table[0, 0, 0].drop_vars([*NUMBERS, "slide_to_roll_ratio"])
-    found = np.reshape(found, (slips.size, *like.shape))
-    found = like.expand_dims(run=slips.size).copy(data=found)
+    found = like.expand_dims(run=slips.size).copy(data=np.stack(found))
+    found = found.squeeze("wave_angle", drop=True) if contact_model == "line" else found
+    name, *_ = KINDS[contact_model]
     return film.assign({f"{name}_real": found.real, f"{name}_imaginary": found.imag})
+
+
+def response_table(solved: xr.Dataset, contact_model: str) -> tuple[xr.DataArray, Array]:
+    """Return responses, and wavelengths over the half-width.
+
+    The dimensions of the responses are M, L, slide-to-roll ratio, roller, angle (one for lines),
+    wavelength and position.
+    """
+    name, *_ = KINDS[contact_model]
+    table = solved[f"{name}_real"] + 1j * solved[f"{name}_imaginary"]
+    if contact_model == "line":
+        table = table.expand_dims(wave_angle=[0.0])
+    names = "slide_to_roll_ratio", "roller", "wave_angle", "wavelength", "response_position"
+    known = table["wavelength"].values / solved["contact_half_width"].item()
+    return table.transpose(*NUMBERS, *names), known
 
 
 def slips_of(deviating: Deviating, points: xr.Dataset) -> Array:
@@ -151,15 +172,15 @@ def _numbers(film):
     return np.stack([np.ravel(each.broadcast_like(like)) for each in numbers])
 
 
-def _levels(values):
+def _levels(values, ratio):
     """Choose levels of M or L between the least and the greatest value."""
     ends = np.nanmin(values) * 0.999, np.nanmax(values) * 1.001
-    count = int(np.ceil(np.log(ends[1] / ends[0]) / np.log(RATIO))) + 1
+    count = int(np.ceil(np.log(ends[1] / ends[0]) / np.log(ratio))) + 1
     return np.geomspace(*ends, max(count, LEAST_LEVELS))
 
 
-def _groups(deviating, moes_load, moes_material):
-    """Form the groups of films of a typical oil at all levels of M and L."""
+def typical_films(deviating: Deviating, moes_load: Array, moes_material: Array) -> xr.DataArray:
+    """Solve for the films of a typical oil of a study, at all levels of M and L."""
     study, oil = deviating.study, np.exp(deviating.oils.isel(lubricant=0).median())
     modulus = 2.0 * study.rollers.reduced_modulus
     material = oil[OIL[1]] * modulus
@@ -167,7 +188,8 @@ def _groups(deviating, moes_load, moes_material):
     load = xr.DataArray(moes_load, dims="moes_load") * np.sqrt(2.0 * speed)
     meniscus = study.inlet_model["inlet_meniscus"]
     meniscus = meniscus and meniscus / study.rollers.reduced_radius
-    return FilmGroups(load, speed, material, oil[OIL[0]], modulus, meniscus)
+    groups = FilmGroups(load, speed, material, oil[OIL[0]], modulus, meniscus)
+    return groups.profiles.assign_coords(moes_load=moes_load, moes_material=moes_material)
 
 
 def _weights(nodes, places):

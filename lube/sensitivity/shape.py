@@ -1,76 +1,149 @@
-"""The flat film that contact sees in a film with a shape."""
+"""The flat film that contact sees where a film has a shape, or the oil deforms the roughness."""
 
-import logging
-from collections.abc import Callable
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.special
-from scipy.interpolate import RegularGridInterpolator
+import xarray as xr
+from scipy.interpolate import NdBSpline, make_interp_spline
 
-from lube.ehl.line_contact import ConvergenceError, LineContact, solve
+from lube.grid.gap import Gap
+from lube.grid.levels import rolling
 from lube.sensitivity.conditions import Deviating
+from lube.sensitivity.responses import KINDS, NUMBERS, response_table, typical_films
+from lube.study.uncertainty import deviating_lines
 from lube.types import Array
 
-log = logging.getLogger(__name__)
-
-NODES = 12, 7, 30
-"""Levels of Moes' numbers M and L, and of the lambda ratio."""
-WINDOW = np.linspace(-1.2, 1.2, 241)
+NODES = {"moes_load": 12, "moes_material": 7, "contact_half_width": 6, "lambda_ratio": 20}
+"""Numbers of levels, evenly spaced in the logarithm."""
+BAND = "longest_wavelength", "shortest_wavelength", "hurst_exponent"
+"""Factors on which it depends how much of the roughness the oil leaves."""
+BAND_NODES = 3
+"""Number of levels of each, evenly spaced."""
+WINDOW = np.linspace(-1.2, 1.2, 121)
 """Positions over the half-width at which roughness may touch."""
 
 
-def effective_ratio(deviating: Deviating, ranges: Array) -> Callable[[Array, Array, Array], Array]:
-    """Tabulate the lambda ratio of the flat film in which as many points of the contact touch.
+@dataclass(frozen=True, eq=False)
+class EffectiveRatio:
+    """Table of lambda ratios of the flat films in which as many points of the contact touch.
 
-    A film with a shape is thinner at the outlet, so points touch there first. The share of points
-    that touch, of Gaussian heights, gives the ratio; the rest of what a shape does is smooth.
+    A film with a shape is thinner at the outlet, so points touch there first. Where the oil deforms
+    the roughness, each position has an rms height of its own. The share of points that touch, of
+    Gaussian heights, gives the ratio; the rest of what shape and deformation do is smooth.
 
-    Parameters
+    Attributes
     ----------
-    deviating : Deviating
-        The study, for the modulus of its rollers and a typical oil.
-    ranges : numpy.ndarray
-        Shape (3, 2): least and greatest M, L and lambda ratio, between which films are solved. A
-        film that does not converge is that of the next smaller M.
-
-    Returns
-    -------
-    callable
-        Effective ratios from lambda ratios, M and L, arrays of the same shape.
+    axes : dict of str to numpy.ndarray
+        Variables and their levels; of films the logarithms, the last is the lambda ratio.
+    multiple : scipy.interpolate.NdBSpline
+        Effective ratio over the lambda ratio.
     """
-    levels = [np.geomspace(*ends, count) for ends, count in zip(ranges, NODES, strict=True)]
-    oil = np.exp(deviating.oils.isel(lubricant=0).median())
-    modulus = 2.0 * deviating.study.rollers.reduced_modulus
-    material = oil["pressure_viscosity_coefficient"].item() * modulus
-    viscosity = oil["dynamic_viscosity"].item()
-    values = np.empty(NODES)
-    for column, moes_material in enumerate(levels[1]):
-        shape = np.ones(WINDOW.size)
-        for row, moes_load in enumerate(levels[0]):
-            speed = 0.5 * (moes_material / material) ** 4
-            load = moes_load * np.sqrt(2.0 * speed)
-            try:
-                film = solve(LineContact(load, speed, material, viscosity, modulus))
-                shape = film.scaled_gap(WINDOW) / film.central_gap
-            except ConvergenceError as error:
-                # The shape changes little from one level to the next.
-                log.warning("M = %.3g, L = %.3g: %s", moes_load, moes_material, error)
-            values[row, column] = _ratio(levels[2][:, None], shape) / levels[2]
-    logarithms = tuple(np.log(each) for each in levels)
-    options = {"bounds_error": False, "fill_value": None}
-    table = RegularGridInterpolator(logarithms, values, "cubic", **options)
 
-    def effective(ratio, moes_load, moes_material):
-        axes = zip(logarithms, (moes_load, moes_material, ratio), strict=True)
-        points = [np.clip(np.log(values), axis[0], axis[-1]) for axis, values in axes]
-        return ratio * table(np.stack(points, axis=-1))
+    axes: dict[str, Array]
+    multiple: NdBSpline
 
-    return effective
+    @classmethod
+    def of(
+        cls, deviating: Deviating, runs: xr.Dataset, gap: Gap, contact_model: str, solved=None
+    ) -> "EffectiveRatio":
+        """Tabulate the ratio over the films of some runs, and some more.
+
+        Parameters
+        ----------
+        deviating : Deviating
+            The study, for the modulus of its rollers and a typical oil.
+        runs : xarray.Dataset
+            Variables `NODES`.
+        gap : Gap
+            With a shape of the film, a deformation of the roughness, or both.
+        contact_model : str
+            As in a study.
+        solved : xarray.Dataset, optional
+            From `lube.sensitivity.responses.solve_responses`, with a deformation; its levels of
+            Moes' numbers are then those of the table.
+        """
+        levels = {
+            name: np.geomspace(0.9 * runs[name].min().item(), 1.1 * runs[name].max().item(), count)
+            for name, count in NODES.items()
+        }
+        if gap.is_answered:
+            levels |= {name: solved[name].values for name in NUMBERS}
+        numbers = {name: levels[name] for name in NUMBERS}
+        film = _shapes(deviating, numbers) if gap.has_shape else np.where(INSIDE, 1.0, np.inf)
+        axes = {name: np.log(each) for name, each in numbers.items()}
+        if gap.is_answered:
+            half_widths = levels["contact_half_width"]
+            band = _band(deviating)
+            rough = _deformed(deviating, solved, contact_model, half_widths, band)
+            film = film.reshape(*film.shape[:-1], *(1,) * (1 + len(band)), -1) / rough
+            axes |= {"contact_half_width": np.log(half_widths)} | band
+        ratios = levels["lambda_ratio"]
+        values = [_ratio(ratios[:, None], one) / ratios for one in film.reshape(-1, WINDOW.size)]
+        axes["lambda_ratio"] = np.log(ratios)
+        return cls(axes, _spline(axes, np.reshape(values, [each.size for each in axes.values()])))
+
+    def __call__(self, ratio: xr.DataArray, film: xr.Dataset, values: Mapping) -> xr.DataArray:
+        """Find the ratio of films, and of deviations of the lines, with given lambda ratios."""
+        given = {**{name: np.log(film[name]) for name in NODES if name != "lambda_ratio"}, **values}
+        given = xr.broadcast(np.log(ratio), *(given[name] for name in list(self.axes)[:-1]))
+        each = zip((*given[1:], given[0]), self.axes.values(), strict=True)
+        points = np.stack([np.clip(one.values, *axis[[0, -1]]) for one, axis in each], axis=-1)
+        return given[0].copy(data=np.exp(given[0].values) * self.multiple(points))
+
+
+INSIDE = np.abs(WINDOW) <= 1.0
+
+
+def _shapes(deviating, numbers):
+    """Film at the window over that at the centre, at levels of M and L."""
+    profiles = typical_films(deviating, **numbers)
+    shape = np.ones((*profiles.shape, WINDOW.size))
+    for (row, column), film in np.ndenumerate(profiles.values):
+        # The shape changes little from one level of M to the next.
+        shape[row, column] = (
+            film.scaled_gap(WINDOW) / film.central_gap if film else shape[max(row - 1, 0), column]
+        )
+    return shape
+
+
+def _band(deviating):
+    """Levels of the factors `BAND` of a study."""
+    given = {name: getattr(deviating.study.uncertainty, name) for name in BAND}
+    return {name: np.linspace(*one.ends, BAND_NODES) for name, one in given.items() if one}
+
+
+def _deformed(deviating, solved, contact_model, half_widths, band):
+    """Rms heights over those drawn: over M, L, half-width, the factors of the band, and window."""
+    heights_of = KINDS[contact_model][2]
+    table, wavelength = response_table(solved, contact_model)
+    table = table.sel(slide_to_roll_ratio=rolling(deviating.study.slips))
+    square = (np.abs(table) ** 2).interp(response_position=WINDOW).values
+    nodes = np.meshgrid(*band.values(), indexing="ij")
+    found = []
+    for half_width in half_widths:
+        for values in zip(*(each.ravel() for each in nodes), strict=True):
+            lines = deviating_lines(deviating.study.line_spec, dict(zip(band, values, strict=True)))
+            heights = heights_of(lines, half_width * wavelength)
+            found.append(np.einsum("raw,mlrawx->mlx", heights / heights.sum(), square))
+    found = np.sqrt(np.stack(found, axis=2))
+    return found.reshape(*found.shape[:2], half_widths.size, *nodes[0].shape, WINDOW.size)
+
+
+def _spline(axes, values):
+    """Tensor product of splines through values at the levels of all axes."""
+    knots, degrees = [], []
+    for axis, levels in enumerate(axes.values()):
+        degrees.append(min(3, levels.size - 1))
+        spline = make_interp_spline(levels, values, degrees[-1], axis=axis)
+        knots.append(spline.t)
+        values = np.moveaxis(spline.c, 0, axis)
+    return NdBSpline(tuple(knots), np.ascontiguousarray(values), tuple(degrees))
 
 
 def _ratio(ratios, shape):
     """Flat film in which as many points touch within the contact."""
     touching = scipy.special.log_ndtr(-ratios * shape)
-    inside = np.count_nonzero(np.abs(WINDOW) <= 1.0)
-    mean = scipy.special.logsumexp(touching, axis=1) - np.log(inside)
+    mean = scipy.special.logsumexp(touching, axis=1) - np.log(np.count_nonzero(INSIDE))
     return -scipy.special.ndtri_exp(np.minimum(mean, -1e-12))

@@ -8,7 +8,6 @@ a shape or an answer of the oil. Its normal quantile is nearly linear in the lam
 function of these groups serves all operating points.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +17,7 @@ from scipy.interpolate import RBFInterpolator
 
 from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating
+from lube.sensitivity.shape import EffectiveRatio
 from lube.study.uncertainty import deviating_heights
 from lube.types import Array
 
@@ -33,7 +33,7 @@ def held_out(count: int) -> int:
 
 
 def groups(
-    deviating: Deviating, film: xr.Dataset, values: dict, gap: Gap, effective: Callable | None
+    deviating: Deviating, film: xr.Dataset, values: dict, gap: Gap, effective: EffectiveRatio | None
 ) -> xr.DataArray:
     """Form the dimensionless groups on which the probability depends.
 
@@ -47,8 +47,8 @@ def groups(
         From `lube.sensitivity.samples.deviations`.
     gap : Gap
         If it is not plain, the probability depends on Moes' numbers, too.
-    effective : callable or None
-        From `lube.sensitivity.shape.effective_ratio`, for films with a shape.
+    effective : EffectiveRatio or None
+        The lambda ratios that contact sees; None in a plain gap.
 
     Returns
     -------
@@ -65,9 +65,8 @@ def groups(
     strength = strength * (1.0 + values.get("shear_strength", 0.0))
     strength = strength / (1.0 + values.get("critical_thickness", 0.0))
     ratio = deviating.equivalent(film["film_thickness"] / rms, values)
-    moes = film["moes_load"], film["moes_material"]
-    if gap.has_shape:
-        ratio = xr.apply_ufunc(effective, *xr.broadcast(ratio, *moes))
+    if effective:
+        ratio = effective(ratio, film, values)
     found = [ratio, np.log(film["contact_half_width"] / longest), np.log(shortest / longest)]
     found += [np.log(strength * shortest ** (2.0 - hurst) * longest**hurst / rms), hurst]
     if not spec.has_like_lines:
@@ -75,7 +74,7 @@ def groups(
     if any(line.has_roll_off for line in spec.lines):
         found += [np.log(longest)]
     if not gap.is_plain:
-        found += [np.log(each) for each in moes]
+        found += [np.log(film[name]) for name in ("moes_load", "moes_material")]
     each = xr.broadcast(*(xr.DataArray(one, name="groups") for one in found))
     return xr.concat(each, "group", coords="minimal", compat="override", join="exact")
 

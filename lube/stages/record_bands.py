@@ -61,7 +61,8 @@ def _assumed(study, inputs, comparison):
     points = xr.Dataset({name: ("point", comparison[name].values) for name in POINT_DIMS})
     with one_blas_thread():  # the number of threads would change the last digits
         deviating = Deviating.of(study, temperatures=comparison["temperature"].values)
-        predictor = Predictor.of(deviating, inputs["sensitivity_runs"])
+        runs, responses = inputs["sensitivity_runs"], inputs.get("sensitivity_responses")
+        predictor = Predictor.of(deviating, runs, responses)
         means, places = predictor.draws(points)
     slip = abs(comparison["slide_to_roll_ratio"].values - rolling(study.slips))
     means[:, slip > NEAR] = np.nan

@@ -1,5 +1,7 @@
 """The sensitivity stage: what the probability of breakthrough rests on."""
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -30,8 +32,11 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     sizes = [len(each) for each in deviating.levels.values()]
 
     with one_blas_thread():  # the number of threads would change the last digits
-        predictor = Predictor.of(deviating, inputs["sensitivity_runs"])
-        sampled = names, predictor.log_probability, study.seed
+        predictor = Predictor.of(
+            deviating, inputs["sensitivity_runs"], inputs.get("sensitivity_responses")
+        )
+        predicted = partial(predictor.log_probability, threads=threads)
+        sampled = names, predicted, study.seed
         single, values = sobol(*sampled)
         grouped, _ = sobol(*sampled, of_factor)
         choices = {one.name: len(one.given.choices) for one in factors if one.name in CHOICES}

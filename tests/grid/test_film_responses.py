@@ -12,9 +12,9 @@ from lube.grid.film_responses import (
     ANGLES,
     SURFACE_VARIABLES,
     _deformation,
-    _line_heights,
-    _surface_heights,
     changed_waves,
+    line_heights,
+    surface_heights,
 )
 from lube.grid.films import FilmGroups, film_at, hertz_contact
 from lube.study.oil_properties import lubricant_table
@@ -91,8 +91,8 @@ def test_waves_of_an_isotropic_surface_change_as_those_of_its_line_if_alike_at_a
 ):
     spec = make_spec(20_000, second_roughness=1e-7)
     wavelengths = np.geomspace(spec.longest_wavelength, 2e-5, 20)
-    lines = _line_heights(spec, wavelengths)
-    surfaces = _surface_heights(spec, ANGLES, wavelengths)
+    lines = line_heights(spec, wavelengths)[:, 0]
+    surfaces = surface_heights(spec, wavelengths)
     np.testing.assert_allclose(surfaces.sum(axis=1), lines, rtol=0.01, atol=1e-3 * lines.max())
     np.testing.assert_allclose(lines.sum(axis=1), np.square(spec.rms_height), rtol=1e-6)
     # As many waves run at any angle; at the ends are half as many nearest.
@@ -105,7 +105,7 @@ def test_waves_of_a_surface_with_a_lay_are_those_of_the_surface_drawn(make_spec,
     lay = {"lay_ratio": 3.0, "lay_angle": lay_angle}
     spec = make_spec(20_000, **lay)
     wavelengths = np.geomspace(spec.longest_wavelength, 2e-5, 20)
-    weights = _surface_heights(spec, ANGLES, wavelengths)[0]
+    weights = surface_heights(spec, wavelengths)[0]
     surface = rough_surface(spec, waves=12)
     units = [2.0 * np.pi / side for side in surface.sides]
     down = units[0] * np.fft.fftfreq(surface.coarse[0], 1.0 / surface.coarse[0])[:, None]
@@ -139,8 +139,7 @@ def test_the_deformation_is_that_of_all_waves_together(responses, make_spec):
     change = change.where(abs(film["response_position"]) <= 1.0, drop=True)
     square = np.mean(abs(change) ** 2, axis=change.dims.index("response_position"))
     square = square.transpose("roller", "wave_angle", "wavelength")
-    levels = film["wave_angle"].values, film["wavelength"].values
-    heights = _surface_heights(make_spec(20_000), *levels)
+    heights = surface_heights(make_spec(20_000), film["wavelength"].values)
     found = film["surface_rms_deformation"].item()
     assert found == pytest.approx(np.sqrt(np.sum(square.values * heights)), rel=1e-5)
     assert 0.2 < found / film["rms_deformation"].item() < 5.0
