@@ -242,14 +242,18 @@ def _points_outside(axes):
 
 
 def _cut_points(axes):
-    """Points so near an edge of the panel that it cuts their markers nearly in half."""
+    """Points so near an edge of the panel that it cuts their markers nearly in half.
+
+    A line with other points beyond the panel has to be cut.
+    """
     panel, cut = axes.get_window_extent(), 0
     for line in axes.lines:
         if line.get_visible() and _has_markers(line) and line.get_clip_on():
             places = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
             room = np.minimum(places - panel.min, panel.max - places).min(axis=1)
             quarter = line.get_markersize() / 4.0 * axes.figure.dpi / 72.0
-            cut += np.count_nonzero((room > -MARGIN) & (room < quarter))
+            if not (room < -MARGIN).any():
+                cut += np.count_nonzero(room < quarter)
     if cut:
         yield f"{cut} points are cut by the edge of panel {_name(axes)!r}"
 
