@@ -471,7 +471,7 @@ def mark_outside(*panels: Axes) -> None:
     """Mark at the panels' edges the points that lie beyond them.
 
     Each point gets a triangle of its colour at the nearest position on the edge, directed at the
-    point.
+    point. The edge cuts no marker of a line whose points all lie within.
 
     Parameters
     ----------
@@ -500,6 +500,8 @@ def mark_outside(*panels: Axes) -> None:
                 CARETRIGHT: (x > right) & (low <= y) & (y <= high),
                 CARETLEFT: (x < left) & (low <= y) & (y <= high),
             }
+            outside = any(there.any() for there in beyond.values())
+            line.set(clip_on=outside, in_layout=False)
             for marker, there in beyond.items():
                 if there.any():
                     at = x[there].clip(left, right), y[there].clip(low, high)

@@ -71,6 +71,7 @@ def faults(figure):
         *_covering_legends(figure),
         *(fault for axes in figure.axes for fault in _covering_words(axes)),
         *(fault for axes in figure.axes for fault in _points_outside(axes)),
+        *(fault for axes in figure.axes for fault in _cut_points(axes)),
         *_unlettered(figure),
     ]
 
@@ -222,6 +223,10 @@ def _points_of(axes):
     return places[np.isfinite(places).all(axis=1)]
 
 
+def _name(axes):
+    return axes.get_title(loc="left") or axes.get_ylabel()
+
+
 def _points_outside(axes):
     """Points that lie outside the panel and have no mark at its edge."""
     panel = axes.get_window_extent()
@@ -233,8 +238,24 @@ def _points_outside(axes):
         marked = any((np.abs(places - nearest).max(axis=1) < MARGIN).any() for places in marks)
         missing += np.abs(nearest - place).max() > MARGIN and not marked
     if missing:
-        title = axes.get_title(loc="left") or axes.get_ylabel()
-        yield f"{missing} points lie outside panel {title!r}, without a mark at its edge"
+        yield f"{missing} points lie outside panel {_name(axes)!r}, without a mark at its edge"
+
+
+def _cut_points(axes):
+    """Points so near an edge of the panel that it cuts their markers nearly in half.
+
+    A line with other points beyond the panel has to be cut.
+    """
+    panel, cut = axes.get_window_extent(), 0
+    for line in axes.lines:
+        if line.get_visible() and _has_markers(line) and line.get_clip_on():
+            places = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
+            room = np.minimum(places - panel.min, panel.max - places).min(axis=1)
+            quarter = line.get_markersize() / 4.0 * axes.figure.dpi / 72.0
+            if not (room < -MARGIN).any():
+                cut += np.count_nonzero(room < quarter)
+    if cut:
+        yield f"{cut} points are cut by the edge of panel {_name(axes)!r}"
 
 
 def _covering_words(axes):

@@ -102,6 +102,13 @@ def test_points_outside_need_a_mark(panels):
     assert faults_of(panels) == ""
 
 
+def test_points_at_an_edge_must_not_be_cut(panels):
+    panels[1].set_ylim(0, 0.9)
+    assert faults_of(panels) == "1 points are cut by the edge of panel '(b)'"
+    panels[1].lines[0].set_clip_on(False)
+    assert faults_of(panels) == ""
+
+
 def test_a_zero_has_no_place_on_a_logarithmic_axis():
     _, axes = plt.subplots()
     axes.plot([1, 2], [0.0, 1.0], "o")

@@ -88,6 +88,14 @@ def test_points_outside_a_panel_are_marked_at_its_edge_in_their_colour():
     assert {line.get_color() for line in marks.values()} == {"red"}
 
 
+def test_an_edge_cuts_no_marker_of_points_within_it():
+    _, axes = plt.subplots()
+    (within,), (outside,) = axes.plot([1, 2], [0, 1], "o"), axes.plot([1, 2], [0, 3], "o")
+    axes.set_ylim(0, 1)
+    plots.mark_outside(axes)
+    assert (within.get_clip_on(), outside.get_clip_on()) == (False, True)
+
+
 @pytest.mark.parametrize(
     ("values", "scale", "least", "top"),
     [([0.2, 0.98], "linear", 0.0, 1.0), ([0.2, 0.4], "linear", 0.0, 0.42), ([], "linear", 0.0, 1.0),

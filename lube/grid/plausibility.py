@@ -63,7 +63,7 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
         for model, share in shares.items()
         if share is not None
     ]
-    return {
+    texts = {
         "Hertz pressure": _range(film["hertz_pressure"], "Pa"),
         "film": f"{_range(film['film_thickness'], 'm')}, by {film['film_formula'].item()}; "
         f"{int(invalid.sum())} of {invalid.size} outside its range of validity",
@@ -74,6 +74,9 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
         f"{_range(width / lines.spacing)} in the contact width",
         "load share": f"at most {', '.join(carried)}",
     }
+    if not lines.follows_rolling:  # surfaces have a grid of their own
+        del texts["grid"]
+    return texts
 
 
 def remarks(film: xr.Dataset, lines, rollers) -> list[str]:

@@ -58,7 +58,8 @@ def fit_alpha(curves: RecordCurves, study: Study, comparison: Data) -> Data:
         ``alpha_factor`` with ``_lower`` and ``_upper`` over (fitted_lubricant, film_formula): 1
         is the coefficient of the study. Beyond `ALPHA_FACTORS` the factor is NaN, a limit 0 or
         infinity. For ``alpha_factor_coverage`` each realisation in turn is left out of the ensemble
-        and taken as the records; it is the fraction of these cases whose interval contains 1.
+        and taken as the records; it is the fraction of these cases whose interval contains 1, or
+        NaN if no realisation has contact.
     """
     logits = alpha_logits(curves, comparison)
     model = curves.contact_model
@@ -292,5 +293,7 @@ def _coverage(log_factors, truth, logits, comparison):
     misfit = np.sum(weight * (probabilities - others), axis=1)
     sums = np.sum(weight * probabilities, axis=1)
     scatter = np.array([np.delete(sums, one).std(ddof=1) for one in range(count)])
+    if not scatter.any():  # no realisation has contact
+        return np.nan
     error = scatter * np.sqrt(1.0 + 1.0 / (count - 1))
     return np.mean(np.abs(misfit) <= quantile(count - 1) * error)

@@ -75,5 +75,7 @@ def test_the_grid_matters_only_where_a_line_stands_for_the_surfaces(study, film)
         roughness = study.roughness.model_copy(update=update)
         update = {"roughness": roughness, "contact_model": ("surface",)}
         lines = study.model_copy(update=update).line_spec
-        found = remarks(film, lines, study.rollers)
+        question = film, lines, study.rollers
+        found = remarks(*question)
         assert any(line.startswith("grid: 8 points") for line in found) == is_said
+        assert ("grid" in overview(*question)) == is_said

@@ -262,6 +262,14 @@ def test_without_any_share_nothing_is_fitted(busy, at_grid):
 # Coverage, each realisation left out in turn and taken as the rig
 
 
+def test_realisations_without_contact_give_no_coverage_of_a_fit(busy, own):
+    """All deviate by nothing, so that an interval from their scatter would have no width."""
+    rare = own.assign(breakthrough_probability=0.0 * own["breakthrough_probability"])
+    for fitted in (alpha_by_map(busy, rare), strength_by_map(busy, rare)):
+        (coverage,) = (values for name, values in fitted.items() if name.endswith("_coverage"))
+        assert coverage.isnull().all()
+
+
 def test_intervals_of_films_hold_the_truth_about_95_times_of_100(busy, own):
     found = coverage_by_map(busy, own)
     assert 0.91 <= found["interval_coverage"].mean() <= 0.99
