@@ -18,11 +18,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import speed_ratios
-from lube.inference.surface_scatter import (
-    revolution_size,
-    surface_prediction,
-    surface_scatter,
-)
+from lube.inference.surface_scatter import revolution_size, surface_prediction, surface_scatter
 from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.surfaces.synthetic import draw_realisation
