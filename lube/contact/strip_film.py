@@ -317,10 +317,6 @@ def _slopes(spec, roller):
     ridges = slope / (1.0 + line.lay_ratio**2)
     across = slope - ridges
     cosine, sine = cosine_and_sine(line.lay_angle)
-    return np.array(
-        [
-            ridges * cosine**2 + across * sine**2,
-            ridges * sine**2 + across * cosine**2,
-            (ridges - across) * cosine * sine,
-        ]
-    )
+    along_rolling = ridges * cosine**2 + across * sine**2
+    along_rollers = ridges * sine**2 + across * cosine**2
+    return np.array([along_rolling, along_rollers, (ridges - across) * cosine * sine])
