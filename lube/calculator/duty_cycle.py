@@ -133,7 +133,9 @@ def duty(
     assumed.check(given)
     turning = rollers.pair.with_radii(given["radius"], given["second_radius"])
     check_contact(rollers, turning.contact_half_width(given["force"]), choices)
-    table = _film(given, turning, oil, formula, film_model(rollers, choices, slip))
+    table = film_of_oil(oil, turning, given, [formula], **film_model(rollers, choices, slip))
+    table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
+    table = table.assign(force=given["force"])
     pair = rollers.rough_pair(seed, choices.gap)
     share, parts, whole = share / share.sum(), of_film(table), {}
     if "line" in choices.models:
@@ -200,13 +202,6 @@ def _conditions(columns, rollers):
         "radius": radius,
         "second_radius": columns.get("second_radius", rollers.pair.second.radius),
     }
-
-
-def _film(given, pair, oil, film_formula, choices):
-    """Film table over ``point``, with the radii of each point."""
-    table = film_of_oil(oil, pair, given, [film_formula], **choices)
-    table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
-    return table.assign(force=given["force"])
 
 
 def _columns(points):
