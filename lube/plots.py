@@ -357,15 +357,10 @@ def legend_above(
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
     entries |= more
+    look = {"loc": "outside upper center", "title": title, "columnspacing": 1.4}
     for rows in range(1, len(entries) + 1):
-        legend = figure.legend(
-            entries.values(),
-            entries.keys(),
-            loc="outside upper center",
-            ncols=-(-len(entries) // rows),
-            title=title,
-            columnspacing=1.4,
-        )
+        columns = -(-len(entries) // rows)
+        legend = figure.legend(entries.values(), entries.keys(), ncols=columns, **look)
         if legend.get_window_extent().width < figure.bbox.width or rows == len(entries):
             return
         legend.remove()

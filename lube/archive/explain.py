@@ -16,7 +16,7 @@ from lube.contact.surface_strip import SURFACES
 from lube.errors import DataError
 from lube.grid.film_responses import with_surface_responses
 from lube.grid.gap import Gap
-from lube.grid.levels import format_levels, level_index
+from lube.grid.levels import level_index
 from lube.report.pages import render
 from lube.schema import CONTACT_DIMS
 from lube.stages.areal import FEWER, contact_of_surfaces
@@ -161,7 +161,8 @@ def _level(coordinate, path, wanted):
     index = level_index(levels, wanted)
     if index is None:
         came = "missing" if wanted is None else f"got {wanted}"
-        raise DataError(f"{path}: {name}: {came}, need one of {format_levels(levels)}")
+        known = ", ".join(one if isinstance(one, str) else f"{one:g}" for one in levels)
+        raise DataError(f"{path}: {name}: {came}, need one of {known}")
     return index
 
 

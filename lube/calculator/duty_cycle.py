@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.bands import Assumptions
@@ -23,15 +24,6 @@ from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
-from lube.types import (
-    ContactModel,
-    File,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-)
 
 _COLUMNS = {
     "force": "N",
@@ -53,17 +45,17 @@ _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed
 
 @checked
 def duty(
-    points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | File,
+    points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | types.File,
     rollers: Rollers,
     oil: Oil,
     *,
     film_formula: str = FORMULA,
-    film_shape: FilmShape = "flat",
-    roughness_deformation: RoughnessDeformation = "none",
-    inlet_shear_heating: InletHeating = "none",
-    inlet_meniscus: OneAmount | None = None,
-    load_sharing: LoadSharing = "none",
-    contact_model: ContactModel | Sequence[ContactModel] = "line",
+    film_shape: types.FilmShape = "flat",
+    roughness_deformation: types.RoughnessDeformation = "none",
+    inlet_shear_heating: types.InletHeating = "none",
+    inlet_meniscus: types.OneAmount | None = None,
+    load_sharing: types.LoadSharing = "none",
+    contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,
@@ -133,21 +125,17 @@ def duty(
     share = columns.get("share", xr.ones_like(columns["force"]))
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
-    choices = Choices.of(
-        film_shape,
-        roughness_deformation,
-        contact_model,
-        inlet_shear_heating,
-        inlet_meniscus,
-        load_sharing,
-    )
+    model = film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    choices = Choices.of(*model, load_sharing)
     check_realisations(realisations, seed)
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
     assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)
     assumed.check(given)
     turning = rollers.pair.with_radii(given["radius"], given["second_radius"])
     check_contact(rollers, turning.contact_half_width(given["force"]), choices)
-    table = _film(given, turning, oil, formula, film_model(rollers, choices, slip))
+    table = film_of_oil(oil, turning, given, [formula], **film_model(rollers, choices, slip))
+    table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
+    table = table.assign(force=given["force"])
     pair = rollers.rough_pair(seed, choices.gap)
     share, parts, whole = share / share.sum(), of_film(table), {}
     if "line" in choices.models:
@@ -214,13 +202,6 @@ def _conditions(columns, rollers):
         "radius": radius,
         "second_radius": columns.get("second_radius", rollers.pair.second.radius),
     }
-
-
-def _film(given, pair, oil, film_formula, choices):
-    """Film table over ``point``, with the radii of each point."""
-    table = film_of_oil(oil, pair, given, [film_formula], **choices)
-    table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
-    return table.assign(force=given["force"])
 
 
 def _columns(points):

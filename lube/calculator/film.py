@@ -16,12 +16,7 @@ from lube.grid.films import film_at
 from lube.grid.plausibility import remarks
 from lube.study.rollers import RollerPair
 from lube.study.surface_checks import check_surfaces
-from lube.types import (
-    Amount,
-    InletHeating,
-    OneAmount,
-    Values,
-)
+from lube.types import Amount, InletHeating, OneAmount, Values
 from lube.units import with_unit
 
 _FILM = (

@@ -99,10 +99,8 @@ class Oil:
         if temperature_range is not None:
             levels = amount("temperature_range", temperature_range, "degC").values.ravel().tolist()
             if len(levels) != 2:
-                came = f"got {shown(temperature_range)}"
-                raise RecordError(
-                    f"Oil: temperature_range: {came}, need the lowest and the highest"
-                )
+                came = f"got {shown(temperature_range)}, need the lowest and the highest"
+                raise RecordError(f"Oil: temperature_range: {came}")
             ends = {"lowest": f"{levels[0]!r} degC", "highest": f"{levels[-1]!r} degC"}
             ends["source"] = _SOURCE
             valid = validate(TemperatureRange, ends, "Oil: temperature_range", RecordError)
@@ -156,10 +154,7 @@ def _record(viscosity, density, base, pressure_viscosity, thermal_conductivity):
         "viscosity": {"source": _SOURCE, "points": _points(viscosity)},
         "density": density | {"source": _SOURCE},
         "pressure_viscosity": alpha,
-        "thermal_conductivity": {
-            "source": _SOURCE,
-            "value": thermal_conductivity or "0.14 W/m/K",
-        },
+        "thermal_conductivity": {"source": _SOURCE, "value": thermal_conductivity or "0.14 W/m/K"},
     }
     record = validate(LubricantRecord, content, "Oil", RecordError)
     check_points(record, "Oil")

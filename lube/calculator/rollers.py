@@ -8,19 +8,9 @@ from lube.calculator.arguments import amount, checked
 from lube.contact.rough_pair import RoughPair
 from lube.errors import StudyError, shown
 from lube.grid.gap import Gap
+from lube.study import rollers
 from lube.study.field_types import validate
 from lube.study.roller_lines import band_in_words, line_spec
-from lube.study.rollers import (
-    AUTOMATIC_WAVELENGTH,
-    INSULATOR,
-    LONGEST_WAVELENGTH,
-    SHORTEST_WAVELENGTH,
-    BoundaryLayer,
-    Roller,
-    RollerPair,
-    Roughness,
-    grid_points,
-)
 from lube.units import parse_quantity
 
 _HEIGHT_STEP = "1 pm"
@@ -131,8 +121,8 @@ class Rollers:
         young_modulus: str = "210 GPa",
         poisson_ratio: float = 0.3,
         second: Mapping[str, object] | None = None,
-        longest_wavelength: str = LONGEST_WAVELENGTH,
-        shortest_wavelength: str = SHORTEST_WAVELENGTH,
+        longest_wavelength: str = rollers.LONGEST_WAVELENGTH,
+        shortest_wavelength: str = rollers.SHORTEST_WAVELENGTH,
         long_cutoff: str | None = None,
         short_cutoff: str | None = None,
         hurst_exponent: float = 0.7,
@@ -147,12 +137,13 @@ class Rollers:
         points: int | None = None,
         critical_thickness: str = "5 nm",
         shear_strength: str = "1 MPa",
-        roughness: Roughness | None = None,
-        boundary_layer: BoundaryLayer | None = None,
+        roughness: rollers.Roughness | None = None,
+        boundary_layer: rollers.BoundaryLayer | None = None,
         resistivity: str = "0.2 uohm*m",
     ) -> None:
         given = dict(locals())
-        for name, kind in (("roughness", Roughness), ("boundary_layer", BoundaryLayer)):
+        parts = {"roughness": rollers.Roughness, "boundary_layer": rollers.BoundaryLayer}
+        for name, kind in parts.items():
             if not isinstance(given[name], kind | None):
                 needed = f"need a lube.stages.{kind.__name__}"
                 needed += "; did you mean rms_roughness or ra_roughness?" * (name == "roughness")
@@ -167,25 +158,25 @@ class Rollers:
         other = first | ({} if heights.keys() & own.keys() else heights) | own
         pair = {
             "length": _metres("length", length),
-            "first": validate(Roller, first | heights, "Rollers", StudyError),
-            "second": validate(Roller, other, "Rollers: second", StudyError),
+            "first": validate(rollers.Roller, first | heights, "Rollers", StudyError),
+            "second": validate(rollers.Roller, other, "Rollers: second", StudyError),
             "composite_rms_roughness": composite_rms_roughness,
         }
-        self.pair = validate(RollerPair, pair, "Rollers", StudyError)
+        self.pair = validate(rollers.RollerPair, pair, "Rollers", StudyError)
         layer = {name: given[name] for name in _LAYER}
-        self.layer = boundary_layer or validate(BoundaryLayer, layer, "Rollers", StudyError)
+        self.layer = boundary_layer or validate(rollers.BoundaryLayer, layer, "Rollers", StudyError)
         self.resistivity = math.nan
-        if resistivity != INSULATOR:
+        if resistivity != rollers.INSULATOR:
             self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
         # Lengths only: a study's other choices depend on its grid.
         waves |= {name: _metres(name, given[name]) for name in _LENGTHS}
         if points is None:
             shortest = parse_quantity(waves["shortest_wavelength"], "m")
-            points = grid_points(self.pair.first.radius, shortest)
+            points = rollers.grid_points(self.pair.first.radius, shortest)
         waves |= {"points": points, "height_step": _HEIGHT_STEP}
-        shared = roughness or validate(Roughness, waves, "Rollers", StudyError)
-        if shared.longest_wavelength == AUTOMATIC_WAVELENGTH:
-            came = f"got {AUTOMATIC_WAVELENGTH!r}, need a length"
+        shared = roughness or validate(rollers.Roughness, waves, "Rollers", StudyError)
+        if shared.longest_wavelength == rollers.AUTOMATIC_WAVELENGTH:
+            came = f"got {rollers.AUTOMATIC_WAVELENGTH!r}, need a length"
             raise StudyError(f"Rollers: roughness.longest_wavelength: {came}")
         self.lines = line_spec(self.pair, shared, largest_force=math.nan)
         self.roughness, self.given_pair = shared, self.pair

@@ -14,12 +14,7 @@ import scipy
 
 from lube.contact.surface_answers import AnsweredStrip, moments_in_gap
 from lube.grid.operating_points import surface_speeds
-from lube.physics.excursions import (
-    PassingContacts,
-    SurfaceMoments,
-    passing_contacts,
-    sharp_surface_summit_share,
-)
+from lube.physics import excursions
 from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.rare_contact import likely_part
 from lube.surfaces.rough_surface import Surface, surface_waves
@@ -99,7 +94,7 @@ class StripFilm:
 
     def contacts(
         self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0
-    ) -> PassingContacts:
+    ) -> excursions.PassingContacts:
         """Find how many contacts theory expects in the strip, and how many appear in it.
 
         Parameters
@@ -125,7 +120,7 @@ class StripFilm:
         spacing = self.width / COLUMNS
         level = self.films(spacing) / np.sqrt(moments[:, 0, 0])
         level = level - max(level.min() - HIGHEST, 0.0)
-        return passing_contacts(level, changes, length, spacing, self.has_edges)
+        return excursions.passing_contacts(level, changes, length, spacing, self.has_edges)
 
     def levels(self, spec: LineSpecLike) -> Array:
         """Film over the rms height in the gap, at `COLUMNS` columns.
@@ -160,7 +155,7 @@ class StripFilm:
         some = slice(1) if self.has_edges else slice(None)
         films, sharp = self.films(spacing)[some], self.breaking_curvatures(spacing, sharp)[some]
         known = surface_moments(spec), sharp, curvature_moments(spec)
-        share = sharp_surface_summit_share(films, *known)
+        share = excursions.sharp_surface_summit_share(films, *known)
         return found.number, found.number * np.average(share, weights=found.density[some])
 
     def passage_width(
@@ -233,7 +228,7 @@ class StripFilm:
 
 
 @functools.lru_cache(maxsize=1)
-def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
+def surface_moments(spec: LineSpecLike) -> excursions.SurfaceMoments:
     """Moments of the surface that a pair of lines stands for, expected from their spectra.
 
     Parameters
@@ -248,7 +243,7 @@ def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
     """
     slopes = _slopes(spec, 0) + _slopes(spec, 1)
     m0, _, m4 = pair_moments(spec)
-    return SurfaceMoments(m0, *slopes.tolist(), m4)
+    return excursions.SurfaceMoments(m0, *slopes.tolist(), m4)
 
 
 def curvature_moments(spec: LineSpecLike) -> Array | None:
@@ -317,10 +312,6 @@ def _slopes(spec, roller):
     ridges = slope / (1.0 + line.lay_ratio**2)
     across = slope - ridges
     cosine, sine = cosine_and_sine(line.lay_angle)
-    return np.array(
-        [
-            ridges * cosine**2 + across * sine**2,
-            ridges * sine**2 + across * cosine**2,
-            (ridges - across) * cosine * sine,
-        ]
-    )
+    along_rolling = ridges * cosine**2 + across * sine**2
+    along_rollers = ridges * sine**2 + across * cosine**2
+    return np.array([along_rolling, along_rollers, (ridges - across) * cosine * sine])

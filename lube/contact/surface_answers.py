@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 import scipy
-import scipy.fft
 
 from lube.contact.waves import FINER, PRECISION, STEEPNESS, Answer, expanded
 from lube.ehl.response import at_wavelengths

@@ -15,8 +15,7 @@ import os
 from dataclasses import replace
 
 import numpy as np
-import scipy.ndimage
-import scipy.optimize
+import scipy
 import xarray as xr
 
 from lube.contact.rough_pair import RoughPair

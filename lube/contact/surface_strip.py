@@ -26,7 +26,6 @@ from functools import partial
 
 import numpy as np
 import scipy
-import scipy.special
 import xarray as xr
 
 from lube.contact.pair_scatter import RecurringContacts, pair_deviation, turn_ratio

@@ -26,10 +26,7 @@ PLACES = 100
 
 
 def surface_traces(
-    pair: RoughPair,
-    film: xr.Dataset,
-    slide_to_roll_ratio: float = 0.0,
-    threads: int | None = None,
+    pair: RoughPair, film: xr.Dataset, slide_to_roll_ratio: float = 0.0, threads: int | None = None
 ) -> xr.Dataset:
     """Follow the contacts of surfaces along the rollers, at some films on the same surfaces.
 

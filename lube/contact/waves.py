@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 import scipy
-import scipy.fft
 import xarray as xr
 
 from lube.ehl.line_contact import one_blas_thread

@@ -352,9 +352,7 @@ def one_blas_thread() -> AbstractContextManager:
     return _libraries().limit(limits=1, user_api="blas")
 
 
-@cache
-def _libraries():
-    return ThreadpoolController()
+_libraries = cache(ThreadpoolController)
 
 
 def profiles_of(*groups: Values, meniscus: float | None = None) -> Array:

@@ -60,8 +60,6 @@ class WaveResponse:
         The steady film.
     wavelength : float
         Wavelength over the half-width.
-    fineness : float, optional
-        The number of nodes per wavelength grows in proportion.
     angle : float, optional
         Angle between rolling and the direction in which the wave runs, degrees, from 0 for crests
         along the rollers to 90 for ridges along rolling.
@@ -79,10 +77,8 @@ class WaveResponse:
         If the film does not converge on these nodes.
     """
 
-    def __init__(
-        self, profile: FilmProfile, wavelength: float, fineness: float = 1.0, angle: float = 0.0
-    ) -> None:
-        self.profile = _resolving(profile, wavelength / (POINTS_A_WAVE * fineness))
+    def __init__(self, profile: FilmProfile, wavelength: float, angle: float = 0.0) -> None:
+        self.profile = _resolving(profile, wavelength / POINTS_A_WAVE)
         self.wavelength, nodes = wavelength, self.profile.nodes
         wavenumber, angle = 2.0 * np.pi / wavelength, np.radians(angle)
         self._along, self._across = wavenumber * np.cos(angle), wavenumber * np.sin(angle)

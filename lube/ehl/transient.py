@@ -25,6 +25,8 @@ from lube.ehl.response import resolved_part
 from lube.ehl.reynolds import HERTZ_LOAD, DiscreteContact
 from lube.types import Array
 
+NODES = 20
+"""Nodes per wavelength of a single wave."""
 CLOSED = 1e-3
 """Gap at which the surfaces touch, over the central film of smooth rollers."""
 REACH, BEYOND = 1.3, 0.15
@@ -337,11 +339,7 @@ class PassedWave:
 
 
 def pass_wave(
-    profile: FilmProfile,
-    wavelength: float,
-    surface_speed: float,
-    amplitude: float,
-    nodes: int = 20,
+    profile: FilmProfile, wavelength: float, surface_speed: float, amplitude: float
 ) -> PassedWave:
     """Let a wave of the roughness of one surface pass through the contact.
 
@@ -355,8 +353,6 @@ def pass_wave(
         Speed of the wave over the entrainment speed, above 0.
     amplitude : float
         Amplitude over the central film.
-    nodes : int, optional
-        Nodes per wavelength.
 
     Returns
     -------
@@ -368,10 +364,10 @@ def pass_wave(
     ConvergenceError
         If a time step does not converge.
     """
-    step, wavenumber = wavelength / nodes, 2.0 * np.pi / wavelength
+    step, wavenumber = wavelength / NODES, 2.0 * np.pi / wavelength
     passage = RoughPassage(profile, step)
     height = amplitude * profile.central_gap * resolved_part(wavelength / passage.spacing)
-    period = round(nodes / surface_speed)
+    period = round(NODES / surface_speed)
     steps = int(_SETTLED / min(surface_speed, 1.0) / step) + period
     gaps, oil = np.empty((period, passage.position.size)), np.ones(period)
     for number in range(1, steps + 1):

@@ -65,27 +65,6 @@ def level_near(levels: Sequence[float], value: float, tolerance: float) -> float
     return nearest if abs(nearest - value) <= tolerance else None
 
 
-def format_levels(levels: Sequence[float | str]) -> str:
-    """List levels in one line.
-
-    Parameters
-    ----------
-    levels : sequence of float or of str
-        Levels of the study.
-
-    Returns
-    -------
-    str
-        Numbers to six digits, names as they are, separated by commas.
-
-    Examples
-    --------
-    >>> format_levels([60.0, 600.0 / 7.0])
-    '60, 85.7143'
-    """
-    return ", ".join(level if isinstance(level, str) else f"{level:g}" for level in levels)
-
-
 def rolling(slide_to_roll_ratio: Sequence[float]) -> float:
     """Return pure rolling if it is among some slide-to-roll ratios, else the first."""
     return 0.0 if 0.0 in slide_to_roll_ratio else slide_to_roll_ratio[0]

@@ -49,15 +49,10 @@ def merged(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
     """
     breakthrough = contact["breakthrough_probability"]
     geometric = contact["geometric_contact_probability_mean"]
-    dims = ["temperature", "speed"]
-    found = xr.apply_ufunc(
-        _falls,
-        *(film["film_thickness"].broadcast_like(geometric), breakthrough, geometric),
-        input_core_dims=[dims, ["realisation", *dims], dims],
-        output_core_dims=[dims],
-        vectorize=True,
-        join="exact",
-    )
+    films, dims = film["film_thickness"].broadcast_like(geometric), ["temperature", "speed"]
+    core = {"input_core_dims": [dims, ["realisation", *dims], dims], "output_core_dims": [dims]}
+    options = core | {"vectorize": True, "join": "exact"}
+    found = xr.apply_ufunc(_falls, films, breakthrough, geometric, **options)
     return found.transpose(*geometric.dims)
 
 

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import scipy
-import scipy.special
 import xarray as xr
 
 from lube.contact.surface_strip import SURFACES
@@ -175,14 +174,9 @@ def _films(row, groups, factor):
         parts = np.array_split(range(factor.size), 1 + factor.size // 20)
         return xr.concat([film(factor[some]) for some in parts], "factor", join="exact")
     films = film(xr.DataArray(COMPUTED_FACTORS, dims="factor"))
-    return xr.apply_ufunc(
-        _between_nodes,
-        films.rename(factor="node"),
-        factor,
-        input_core_dims=[["node"], ["factor"]],
-        output_core_dims=[["factor"]],
-        vectorize=True,
-    )
+    core = {"input_core_dims": [["node"], ["factor"]], "output_core_dims": [["factor"]]}
+    nodes = films.rename(factor="node")
+    return xr.apply_ufunc(_between_nodes, nodes, factor, **core, vectorize=True)
 
 
 def _between_nodes(films, factor):

@@ -20,12 +20,7 @@ from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.inference.record_scatter import crosswise
 from lube.inference.surface_scatter import revolution_size, surface_scatter
-from lube.statistics.one_pair import (
-    distinct_alignments,
-    persistent_share,
-    quantile,
-    scatter_ratio,
-)
+from lube.statistics.one_pair import distinct_alignments, persistent_share, quantile, scatter_ratio
 from lube.study.rollers import RollerPair
 from lube.types import Array, Values
 

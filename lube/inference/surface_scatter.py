@@ -63,12 +63,7 @@ def surface_prediction(
 
 
 def surface_scatter(
-    pair: RoughPair,
-    films: xr.Dataset,
-    shares: Array,
-    slips: Array,
-    turns: Array,
-    drift: float,
+    pair: RoughPair, films: xr.Dataset, shares: Array, slips: Array, turns: Array, drift: float
 ) -> Array:
     """Find how far the share of each record scatters between pairs of surfaces.
 

@@ -14,12 +14,7 @@ from lube.types import Array, Pair
 
 @kernel
 def touching_windows(
-    line: Array,
-    starts: Array,
-    correlation: Array,
-    touching: Pair,
-    film: Array,
-    factor: float,
+    line: Array, starts: Array, correlation: Array, touching: Pair, film: Array, factor: float
 ) -> tuple[float, float]:
     r"""Weigh windows in which one point is known to touch.
 

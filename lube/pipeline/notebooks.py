@@ -118,16 +118,9 @@ def _execute(notebook, output, parameters, drawn_by, code):
         for name in [name for name in sys.modules if name.split(".")[0] == "lube"]:
             del sys.modules[name]
         sys.path.insert(0, str(code))
+    options = {"kernel_name": "python3", "language": "python", "progress_bar": False}
     try:
-        papermill.execute_notebook(
-            notebook,
-            output,
-            parameters,
-            engine_name=_ENGINE,
-            kernel_name="python3",
-            language="python",
-            progress_bar=False,
-        )
+        papermill.execute_notebook(notebook, output, parameters, _ENGINE, **options)
     except PapermillExecutionError:
         raise SystemExit(_CELL_FAILED) from None
 

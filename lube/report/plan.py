@@ -88,12 +88,8 @@ def _others(points):
     best = [one for one in np.argsort(-gain.values)[:MOST] if gain.values[one] > 0.0]
     if not best:
         return "No quantity narrows the band of the assumptions by more than the noise."
-    rows = zip(
-        map(spoken, gain["factor"].values[best]),
-        points["range_of_factor"].values[best],
-        points["accuracy_of_factor"].values[best],
-        map(percent, gain.values[best]),
-        strict=True,
-    )
+    names = map(spoken, gain["factor"].values[best])
+    known = (points[f"{key}_of_factor"].values[best] for key in ("range", "accuracy"))
+    rows = zip(names, *known, map(percent, gain.values[best]), strict=True)
     headings = "measure otherwise", "now uncertain by", "measured to", "narrows the band by"
     return f"{markdown_table(headings, rows)}\n\n{_NARROWER}"

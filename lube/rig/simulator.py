@@ -102,9 +102,7 @@ def whole_points(length: Array, spec: LineSpec) -> Array:
 
 def _parts(study):
     """Part of each turn that the rig runs: only the last may be less than 1."""
-    return [
-        min(study.rig.revolutions - turn, 1.0) for turn in range(math.ceil(study.rig.revolutions))
-    ]
+    return np.minimum(study.rig.revolutions - np.arange(math.ceil(study.rig.revolutions)), 1.0)
 
 
 def _line_runs(study, points, numbers):
@@ -143,7 +141,7 @@ def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
     """
     drift, pairs = study.rig.drift, iter(pairs)
     pair = next(pairs)
-    for turn, _ in enumerate(_parts(study)):
+    for turn in range(math.ceil(study.rig.revolutions)):
         if turn and drift > 0.0:
             both = zip(pair, next(pairs), strict=True)
             pair = tuple(_renewed(old, new, drift) for old, new in both)
@@ -151,11 +149,7 @@ def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
 
 
 def recorded(
-    contact: Array,
-    point: xr.Dataset,
-    study: Study,
-    seed: tuple[int, ...],
-    time_step: float,
+    contact: Array, point: xr.Dataset, study: Study, seed: tuple[int, ...], time_step: float
 ) -> "Revolution":
     """Take contact at an operating point for what the rig records.
 
@@ -177,12 +171,9 @@ def recorded(
     Revolution
         Contact with the circuit that it closes.
     """
-    capacitance = film_capacitance(
-        point["film_thickness"].item(),
-        point["contact_half_width"].item(),
-        study.rollers.length,
-        study.rig.oil_permittivity,
-    )
+    film, half_width = (point[name].item() for name in ("film_thickness", "contact_half_width"))
+    settings = study.rollers.length, study.rig.oil_permittivity
+    capacitance = film_capacitance(film, half_width, *settings)
     spot_resistance = study.resistivity / study.line_spec.spacing
     return Revolution(contact, time_step, spot_resistance, capacitance, seed)
 

@@ -6,6 +6,7 @@ import os
 
 import numpy as np
 
+from lube.grid.film_profiles import six_digits
 from lube.study.roller_topography import RollerTopography
 from lube.study.topography_files import read_topography
 from lube.surfaces.measured_line import closed_line, repeated_line
@@ -100,10 +101,9 @@ def table(
         If the spectrum does not cover the band.
     """
     limits = (2.0 * np.pi / wave for wave in band)
-    # Rounded: the last digits may depend on the machine.
-    wave_vector, density = (tuple(map(_rounded, each)) for each in band_table(spectrum, *limits))
-    rms = power_law_integral(np.array(wave_vector), np.array(density)) ** 0.5
-    return _rounded(rms), (wave_vector, density)
+    wave_vector, density = map(six_digits, band_table(spectrum, *limits))
+    rms = six_digits(power_law_integral(wave_vector, density) ** 0.5)
+    return rms.item(), (tuple(wave_vector.tolist()), tuple(density.tolist()))
 
 
 @functools.lru_cache(maxsize=4)
@@ -140,7 +140,3 @@ def measured_line(
     line = closed_line if use == "closed line" else repeated_line
     steps = line(profile, points, spacing, shortest, height_step)
     return float(np.std(steps)) * height_step, steps.tobytes()
-
-
-def _rounded(value):
-    return float(f"{value:.6g}")

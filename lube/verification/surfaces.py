@@ -3,8 +3,7 @@
 from functools import partial
 
 import numpy as np
-import scipy.ndimage
-import scipy.sparse.csgraph
+import scipy
 
 from lube.contact.strip_film import surface_moments
 from lube.physics.excursions import expected_contacts

@@ -1,13 +1,14 @@
 """What the oil does to waves: Reynolds' equation itself, limits, print, and other codes."""
 
 from functools import cache
+from unittest import mock
 
 import numpy as np
 import pytest
 from paper_grid import contact_at, contact_by
 
 from lube.ehl.line_contact import on_nodes, solve
-from lube.ehl.response import WaveResponse, at_wavelengths
+from lube.ehl.response import POINTS_A_WAVE, WaveResponse, at_wavelengths
 from lube.ehl.reynolds import DiscreteContact
 
 HEAVY, FIG_5, LIGHT = (1600, 100, 80), (800, 100, 40), (100, 100, 80)
@@ -25,8 +26,13 @@ def film_by(moes_load, moes_material, fineness=1.0):
     return solve(contact_by(moes_load, moes_material), fineness=fineness)
 
 
+def on_finer_nodes(fineness, *arguments):
+    with mock.patch("lube.ehl.response.POINTS_A_WAVE", fineness * POINTS_A_WAVE):
+        return WaveResponse(*arguments)
+
+
 def at_centre(profile, wavelength, speed=1.0, fineness=1.0, fixed_load=True):
-    wave = WaveResponse(profile, wavelength, fineness)
+    wave = on_finer_nodes(fineness, profile, wavelength)
     return abs(wave.transfer(speed, MIDDLE, fixed_load).item())
 
 
@@ -89,7 +95,7 @@ def literal(wave, speed, position):
 def test_it_is_what_a_literal_solution_on_finer_nodes_finds(speed):
     position = np.array([-0.5, 0.0, 0.5, 0.8])
     found = WaveResponse(profile_at(HEAVY), 1.0).transfer(speed, position)
-    fine = WaveResponse(profile_at(HEAVY), 1.0, fineness=4.0)
+    fine = on_finer_nodes(4.0, profile_at(HEAVY), 1.0)
     np.testing.assert_allclose(found, literal(fine, speed, position), atol=0.02)
 
 
@@ -173,7 +179,7 @@ def test_another_code_finds_the_same_across_the_contact_and_at_a_fixed_gap():
 
 
 def at_angle(point, wavelength, angle, speed=1.0, fineness=1.0):
-    wave = WaveResponse(profile_at(point), wavelength, fineness, angle)
+    wave = on_finer_nodes(fineness, profile_at(point), wavelength, angle)
     return wave.transfer(speed, MIDDLE).item()
 
 

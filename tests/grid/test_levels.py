@@ -1,6 +1,6 @@
 """Which level a number or a name stands for."""
 
-from lube.grid.levels import NEAR, SAME, format_levels, level_index, level_near
+from lube.grid.levels import NEAR, SAME, level_index, level_near
 
 SPEEDS = [60.0, 600.0 / 7.0, 100.0]
 
@@ -31,8 +31,3 @@ def test_a_measured_value_stands_for_the_nearest_level_within_its_tolerance():
         assert level_near([40.0, 80.0], value, 1.0) == level
     assert level_near([40.0, 41.0], 40.6, 5.0) == 41.0
     assert level_near([41.0, 40.0], 40.4, 5.0) == 40.0
-
-
-def test_levels_are_listed_in_one_line():
-    assert format_levels(SPEEDS) == "60, 85.7143, 100"
-    assert format_levels(["paper", "pan-hamrock"]) == "paper, pan-hamrock"
