@@ -6,11 +6,18 @@ from typing import TypedDict, get_args
 
 import numpy as np
 
-from lube import types
 from lube.calculator.arguments import amount, single
 from lube.errors import StudyError, right_one, shown
 from lube.grid.gap import PLAIN, Gap
 from lube.study.study import Study
+from lube.types import (
+    ContactModel,
+    FilmShape,
+    InletHeating,
+    LoadSharing,
+    OneAmount,
+    RoughnessDeformation,
+)
 
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
@@ -20,10 +27,10 @@ class Model(TypedDict):
     """Arguments that choose the model of an answer."""
 
     film_formula: str
-    film_shape: types.FilmShape
-    roughness_deformation: types.RoughnessDeformation
-    contact_model: types.ContactModel
-    inlet_shear_heating: types.InletHeating
+    film_shape: FilmShape
+    roughness_deformation: RoughnessDeformation
+    contact_model: ContactModel
+    inlet_shear_heating: InletHeating
 
 
 COMPLETE: Model = {
@@ -61,20 +68,20 @@ class Choices:
     """
 
     gap: Gap = PLAIN
-    models: tuple[types.ContactModel, ...] = ("line",)
-    load_sharing: types.LoadSharing = "none"
-    inlet_shear_heating: types.InletHeating = "none"
+    models: tuple[ContactModel, ...] = ("line",)
+    load_sharing: LoadSharing = "none"
+    inlet_shear_heating: InletHeating = "none"
     inlet_meniscus: float | None = None
 
     @classmethod
     def of(
         cls,
-        film_shape: types.FilmShape = "flat",
-        roughness_deformation: types.RoughnessDeformation = "none",
-        contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
-        inlet_shear_heating: types.InletHeating = "none",
-        inlet_meniscus: types.OneAmount | None = None,
-        load_sharing: types.LoadSharing = "none",
+        film_shape: FilmShape = "flat",
+        roughness_deformation: RoughnessDeformation = "none",
+        contact_model: ContactModel | Sequence[ContactModel] = "line",
+        inlet_shear_heating: InletHeating = "none",
+        inlet_meniscus: OneAmount | None = None,
+        load_sharing: LoadSharing = "none",
     ) -> "Choices":
         """Choose by the values of a study's keys.
 
@@ -89,14 +96,14 @@ class Choices:
             _check_choice(name, value, get_args(Study.model_fields[name].annotation))
         models = tuple(np.ravel(contact_model).tolist())
         for model in models or [contact_model]:
-            _check_choice("contact_model", model, get_args(types.ContactModel))
+            _check_choice("contact_model", model, get_args(ContactModel))
         if inlet_meniscus is not None:
             inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
         return cls(Gap(**gap), models, **film, inlet_meniscus=inlet_meniscus)
 
     @classmethod
     def of_smooth_rollers(
-        cls, inlet_shear_heating: types.InletHeating, inlet_meniscus: types.OneAmount | None
+        cls, inlet_shear_heating: InletHeating, inlet_meniscus: OneAmount | None
     ) -> "Choices":
         """As `of`, of a film without contact, which no lines or surfaces can refuse."""
         choices = cls.of(inlet_shear_heating=inlet_shear_heating, inlet_meniscus=inlet_meniscus)

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import bare_number, check_realisations, checked, conditions
 from lube.calculator.bands import Assumptions
@@ -24,6 +23,15 @@ from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
+from lube.types import (
+    Amount,
+    ContactModel,
+    FilmShape,
+    InletHeating,
+    LoadSharing,
+    OneAmount,
+    RoughnessDeformation,
+)
 
 _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
@@ -32,18 +40,18 @@ _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 def contact_probability(
     rollers: Rollers,
     oil: Oil,
-    force: types.Amount,
-    speed: types.Amount,
-    temperature: types.Amount,
+    force: Amount,
+    speed: Amount,
+    temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
-    film_shape: types.FilmShape = "flat",
-    roughness_deformation: types.RoughnessDeformation = "none",
-    inlet_shear_heating: types.InletHeating = "none",
-    inlet_meniscus: types.OneAmount | None = None,
-    load_sharing: types.LoadSharing = "none",
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
+    load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
-    contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
+    contact_model: ContactModel | Sequence[ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, bare_number, check_realisations, checked, one_name
 from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
@@ -25,26 +24,34 @@ from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import Revolution
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.surfaces.synthetic import draw_realisation
+from lube.types import (
+    Amount,
+    ContactModel,
+    FilmShape,
+    InletHeating,
+    OneAmount,
+    RoughnessDeformation,
+)
 
 
 @checked
 def plan(
     rollers: Rollers,
     oil: Oil,
-    force: types.Amount,
-    speed: types.Amount,
-    temperature: types.Amount,
+    force: Amount,
+    speed: Amount,
+    temperature: Amount,
     *,
     film_formula: str = FORMULA,
-    film_shape: types.FilmShape = "flat",
-    roughness_deformation: types.RoughnessDeformation = "none",
-    inlet_shear_heating: types.InletHeating = "none",
-    inlet_meniscus: types.OneAmount | None = None,
+    film_shape: FilmShape = "flat",
+    roughness_deformation: RoughnessDeformation = "none",
+    inlet_shear_heating: InletHeating = "none",
+    inlet_meniscus: OneAmount | None = None,
     slide_to_roll_ratio: float = 0.0,
-    contact_model: types.ContactModel = "line",
+    contact_model: ContactModel = "line",
     turns: float | Sequence[float] = 1.0,
     rig: KnownRig | None = None,
-    threshold: types.Amount = "100 ohm",
+    threshold: Amount = "100 ohm",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
