@@ -180,7 +180,10 @@ def _levels(values, ratio):
 
 
 def typical_films(deviating: Deviating, moes_load: Array, moes_material: Array) -> xr.DataArray:
-    """Solve for the films of a typical oil of a study, at all levels of M and L."""
+    """Solve for the films of a typical oil of a study, at all levels of M and L.
+
+    A film that does not converge is that of the next smaller M.
+    """
     study, oil = deviating.study, np.exp(deviating.oils.isel(lubricant=0).median())
     modulus = 2.0 * study.rollers.reduced_modulus
     material = oil[OIL[1]] * modulus
@@ -189,7 +192,10 @@ def typical_films(deviating: Deviating, moes_load: Array, moes_material: Array) 
     meniscus = study.inlet_model["inlet_meniscus"]
     meniscus = meniscus and meniscus / study.rollers.reduced_radius
     groups = FilmGroups(load, speed, material, oil[OIL[0]], modulus, meniscus)
-    return groups.profiles.assign_coords(moes_load=moes_load, moes_material=moes_material)
+    films = groups.profiles.transpose(*NUMBERS)
+    for (row, column), film in np.ndenumerate(films.values):
+        films.values[row, column] = film or films.values[row - 1, column]
+    return films.assign_coords(moes_load=moes_load, moes_material=moes_material)
 
 
 def _weights(nodes, places):

@@ -1,5 +1,6 @@
 """The flat film that contact sees where a film has a shape, or the oil deforms the roughness."""
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -23,6 +24,8 @@ BAND_NODES = 3
 """Number of levels of each, evenly spaced."""
 WINDOW = np.linspace(-1.2, 1.2, 121)
 """Positions over the half-width at which roughness may touch."""
+INSIDE = np.abs(WINDOW) <= 1.0
+"""Those in the contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,19 +96,11 @@ class EffectiveRatio:
         return given[0].copy(data=np.exp(given[0].values) * self.multiple(points))
 
 
-INSIDE = np.abs(WINDOW) <= 1.0
-
-
 def _shapes(deviating, numbers):
     """Film at the window over that at the centre, at levels of M and L."""
-    profiles = typical_films(deviating, **numbers)
-    shape = np.ones((*profiles.shape, WINDOW.size))
-    for (row, column), film in np.ndenumerate(profiles.values):
-        # The shape changes little from one level of M to the next.
-        shape[row, column] = (
-            film.scaled_gap(WINDOW) / film.central_gap if film else shape[max(row - 1, 0), column]
-        )
-    return shape
+    films = typical_films(deviating, **numbers)
+    shapes = [film.scaled_gap(WINDOW) / film.central_gap for film in films.values.flat]
+    return np.reshape(shapes, (*films.shape, WINDOW.size))
 
 
 def _band(deviating):
@@ -120,15 +115,14 @@ def _deformed(deviating, solved, contact_model, half_widths, band):
     table, wavelength = response_table(solved, contact_model)
     table = table.sel(slide_to_roll_ratio=rolling(deviating.study.slips))
     square = (np.abs(table) ** 2).interp(response_position=WINDOW).values
-    nodes = np.meshgrid(*band.values(), indexing="ij")
     found = []
-    for half_width in half_widths:
-        for values in zip(*(each.ravel() for each in nodes), strict=True):
-            lines = deviating_lines(deviating.study.line_spec, dict(zip(band, values, strict=True)))
-            heights = heights_of(lines, half_width * wavelength)
-            found.append(np.einsum("raw,mlrawx->mlx", heights / heights.sum(), square))
+    for half_width, *values in itertools.product(half_widths, *band.values()):
+        lines = deviating_lines(deviating.study.line_spec, dict(zip(band, values, strict=True)))
+        heights = heights_of(lines, half_width * wavelength)
+        found.append(np.einsum("raw,mlrawx->mlx", heights / heights.sum(), square))
     found = np.sqrt(np.stack(found, axis=2))
-    return found.reshape(*found.shape[:2], half_widths.size, *nodes[0].shape, WINDOW.size)
+    levels = [each.size for each in (half_widths, *band.values())]
+    return found.reshape(*found.shape[:2], *levels, WINDOW.size)
 
 
 def _spline(axes, values):

@@ -2,11 +2,19 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from studies import CONFIG
 
 from lube.sensitivity import runs
 from lube.sensitivity.conditions import Deviating
-from lube.sensitivity.responses import KINDS, slips_of, solve_responses, with_responses
+from lube.sensitivity.responses import (
+    KINDS,
+    NUMBERS,
+    slips_of,
+    solve_responses,
+    typical_films,
+    with_responses,
+)
 from lube.sensitivity.runs import Model, design, run
 from lube.sensitivity.samples import deviations, over_run
 from lube.study.study import load_study
@@ -87,6 +95,14 @@ def test_probabilities_are_those_with_the_films_own_responses():
     known = np.array(expected) > 0.0
     assert known.sum() > 10
     np.testing.assert_allclose(np.log(found[known] / np.array(expected)[known]), 0.0, atol=0.08)
+
+
+def test_a_film_that_does_not_converge_is_that_of_the_next_smaller_load(monkeypatch):
+    profiles = xr.DataArray(np.array([["first", "second"], ["", "third"]], object), dims=NUMBERS)
+    profiles.values[1, 0] = None
+    monkeypatch.setattr("lube.sensitivity.responses.FilmGroups.profiles", profiles)
+    found = typical_films(deviating(), np.array([1.0, 2.0]), np.array([5.0, 6.0]))
+    assert found.values.tolist() == [["first", "second"], ["first", "third"]]
 
 
 def test_some_runs_have_the_responses_that_they_have_among_all():

@@ -92,10 +92,11 @@ SECTION = {
 
 
 @pytest.mark.parametrize(
-    ("contact_model", "heights_of"), [("line", line_heights), ("surface", surface_heights)]
+    ("contact_model", "heights_of", "uncertain"),
+    [("line", line_heights, SECTION), ("surface", surface_heights, {"force": SECTION["force"]})],
 )
 def test_where_the_oil_deforms_the_roughness_as_many_points_touch_as_under_the_film_itself(
-    contact_model, heights_of, monkeypatch
+    contact_model, heights_of, uncertain, monkeypatch
 ):
     monkeypatch.setattr("lube.grid.film_responses.ANGLES", np.array([0.0, 60.0, 90.0]))
     monkeypatch.setattr(
@@ -105,7 +106,7 @@ def test_where_the_oil_deforms_the_roughness_as_many_points_touch_as_under_the_f
     update = {
         "roughness_deformation": "computed",
         "contact_model": (contact_model,),
-        "uncertainty": Uncertainty.model_validate(SECTION),
+        "uncertainty": Uncertainty.model_validate(uncertain),
     }
     deviating = Deviating.of(own.model_copy(update=update))
     spec = deviating.study.line_spec
