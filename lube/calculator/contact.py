@@ -152,8 +152,14 @@ def contact_probability(
     True
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    model = film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    choices = Choices.of(*model, load_sharing)
+    choices = Choices.of(
+        film_shape,
+        roughness_deformation,
+        contact_model,
+        inlet_shear_heating,
+        inlet_meniscus,
+        load_sharing,
+    )
     pair = rollers.rough_pair(seed, choices.gap)
     check_realisations(realisations, seed)
     assumed = Assumptions(bands, rollers, oil, choices, formula_names(film_formula)[0], seed)

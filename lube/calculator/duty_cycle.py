@@ -133,8 +133,14 @@ def duty(
     share = columns.get("share", xr.ones_like(columns["force"]))
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
-    model = film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    choices = Choices.of(*model, load_sharing)
+    choices = Choices.of(
+        film_shape,
+        roughness_deformation,
+        contact_model,
+        inlet_shear_heating,
+        inlet_meniscus,
+        load_sharing,
+    )
     check_realisations(realisations, seed)
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
     assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)

@@ -70,9 +70,13 @@ def trace(
     '120 ms'
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    kind = one_name("contact_model", contact_model)
-    model = film_shape, roughness_deformation, kind, inlet_shear_heating, inlet_meniscus
-    choices = Choices.of(*model)
+    choices = Choices.of(
+        film_shape,
+        roughness_deformation,
+        one_name("contact_model", contact_model),
+        inlet_shear_heating,
+        inlet_meniscus,
+    )
     formula = one_name("film_formula", film_formula)
     one = _one_point(rollers, oil, force, speed, temperature)
     if contact_model == "surface":

@@ -18,7 +18,16 @@ from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, right_one
 from lube.grid.discretise import speed_ratios
 from lube.grid.operating_points import surface_speeds
-from lube.inference import planning
+from lube.inference.planning import (
+    QUANTITIES,
+    film_by_coefficient,
+    half_widths,
+    line_ratios,
+    on_surfaces,
+    reading_of_surfaces,
+    relative_error,
+    slopes,
+)
 from lube.physics.electrical import film_capacitance
 from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import Revolution
@@ -106,8 +115,9 @@ def plan(
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else ["line", model]
-    given = film_shape, roughness_deformation, models, inlet_shear_heating, inlet_meniscus
-    choices = Choices.of(*given)
+    choices = Choices.of(
+        film_shape, roughness_deformation, models, inlet_shear_heating, inlet_meniscus
+    )
     check_realisations(realisations, seed)
     formula = one_name("film_formula", film_formula)
     table = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
@@ -115,27 +125,26 @@ def plan(
     records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, choices.gap)
     if model == "surface":
         contact = surface_contact(pair, table)
-        found, size, ratio = planning.on_surfaces(pair, table, contact, slip, records)
-        reading, realisations = planning.reading_of_surfaces(reading, found.probability), SURFACES
+        found, size, ratio = on_surfaces(pair, table, contact, slip, records)
+        reading, realisations = reading_of_surfaces(reading, found.probability), SURFACES
     else:
         contact = ensemble(pair, table, realisations, slip)
         slower, width = min(speed_ratios(slip)), 2.0 * table["contact_half_width"]
         windows = rollers.lines.independent_windows(width, slower)
         size = sample_size(contact["breakthrough_probability"], windows).ravel()
-        found = planning.slopes(pair, table)
-        ratio = planning.line_ratios(pair, table, slip, records)
-    error = planning.relative_error(found.probability, size, ratio[:, None], reading)
+        found, ratio = slopes(pair, table), line_ratios(pair, table, slip, records)
+    error = relative_error(found.probability, size, ratio[:, None], reading)
     oils, dims = oil.at(table["temperature"]), table["film_thickness"].dims
     given = oils, rollers.pair, table["force"], table["speed"], formula
     # Heating does not depend on the coefficient.
-    slope = planning.film_by_coefficient(*given, inlet_meniscus=choices.inlet_meniscus)
+    slope = film_by_coefficient(*given, inlet_meniscus=choices.inlet_meniscus)
     by_coefficient = slope.transpose(*dims).values.ravel()
-    widths = planning.half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
+    widths = half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
     shape, read = table["film_thickness"].shape, (*thresholds.dims, *dims)
-    answer = of_film(table).assign_coords(quantity=list(planning.QUANTITIES))
+    answer = of_film(table).assign_coords(quantity=list(QUANTITIES))
     answer = answer.assign_coords(turns.coords).assign_coords(thresholds.coords)
     answer["breakthrough_probability"] = dims, found.probability.reshape(shape)
-    sizes = len(planning.QUANTITIES), *turns.shape, *thresholds.shape, *shape
+    sizes = len(QUANTITIES), *turns.shape, *thresholds.shape, *shape
     answer["half_width"] = ("quantity", *turns.dims, *read), widths.reshape(sizes)
     answer["reading_error"] = read, reading.reshape((*thresholds.shape, *shape))
     return with_remarks(answer, table, rollers)

@@ -158,8 +158,9 @@ def required_viscosity(
         found = film_in_si(rollers, thicker, force, speed, temperature, one, choices)
         return found.assign_coords(viscosity_factor=("factor", factors))
 
-    model = film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    choices = Choices.of(*model)
+    choices = Choices.of(
+        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
     search = FilmSearch(assumed, share, realisations)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
@@ -217,8 +218,9 @@ def required_speed(
     def table(speeds, choices):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
 
-    model = film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    choices = Choices.of(*model)
+    choices = Choices.of(
+        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
     search = FilmSearch(assumed, share, realisations)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
@@ -274,8 +276,9 @@ def required_temperature(
     def table(temperatures, choices):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
 
-    model = film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    choices = Choices.of(*model)
+    choices = Choices.of(
+        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
     search = FilmSearch(assumed, share, realisations)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
@@ -331,8 +334,9 @@ def required_roughness(
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
     one = one_name("film_formula", film_formula)
-    model = film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    choices = Choices.of(*model)
+    choices = Choices.of(
+        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
     search = FilmSearch(assumed, share, realisations)
     film = film_in_si(rollers, oil, force, speed, temperature, one, choices)
