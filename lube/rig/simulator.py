@@ -172,8 +172,8 @@ def recorded(
         Contact with the circuit that it closes.
     """
     film, half_width = (point[name].item() for name in ("film_thickness", "contact_half_width"))
-    settings = study.rollers.length, study.rig.oil_permittivity
-    capacitance = film_capacitance(film, half_width, *settings)
+    length, permittivity = study.rollers.length, study.rig.oil_permittivity
+    capacitance = film_capacitance(film, half_width, length, permittivity)
     spot_resistance = study.resistivity / study.line_spec.spacing
     return Revolution(contact, time_step, spot_resistance, capacitance, seed)
 
