@@ -465,8 +465,8 @@ def probability_limits(*panels: Axes, least: float = 0.0) -> None:
 def mark_outside(*panels: Axes) -> None:
     """Mark at the panels' edges the points that lie beyond them.
 
-    Each point gets a triangle of its colour at the nearest position on the edge, directed at the
-    point. The edge cuts no marker of a line whose points all lie within.
+    Each point gets a triangle of its colour, filled or hollow as its marker, at the nearest
+    position on the edge, directed at the point. The edge cuts no marker of a line whose points all lie within.
 
     Parameters
     ----------
@@ -500,7 +500,8 @@ def mark_outside(*panels: Axes) -> None:
             for marker, there in beyond.items():
                 if there.any():
                     at = x[there].clip(left, right), y[there].clip(low, high)
-                    panel.plot(*at, marker=marker, color=line.get_color(), **edge_mark)
+                    face = line.get_markerfacecolor()
+                    panel.plot(*at, marker=marker, color=line.get_color(), mfc=face, **edge_mark)
 
 
 def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:
