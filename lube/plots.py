@@ -466,7 +466,8 @@ def mark_outside(*panels: Axes) -> None:
     """Mark at the panels' edges the points that lie beyond them.
 
     Each point gets a triangle of its colour, filled or hollow as its marker, at the nearest
-    position on the edge, directed at the point. The edge cuts no marker of a line whose points all lie within.
+    position on the edge, directed at the point. The edge cuts no marker of a line whose points all
+    lie within.
 
     Parameters
     ----------

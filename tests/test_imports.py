@@ -22,7 +22,7 @@ MODULES = {
 # A folder, or a module beside them, imports from those of the floors before its own.
 FLOORS = [
     {"errors", "types", "lazy", "threads"},
-    {"kernels"},
+    {"kernels", "digits"},
     {"units", "schema", "physics", "statistics", "surfaces"},
     {"ehl"},
     {"grid"},

@@ -8,10 +8,10 @@ import numpy as np
 import scipy
 import xarray as xr
 
+from lube.digits import six_digits
 from lube.ehl.line_contact import one_blas_thread
 from lube.ehl.response import at_wavelengths
 from lube.grid.discretise import LineGrid
-from lube.grid.film_profiles import six_digits
 from lube.kernels.motion import surface_position
 from lube.kernels.runs import BLOCK_SHIFT
 from lube.kernels.shaped import Surface, answer_at

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
+from lube.digits import six_digits
 from lube.physics.hertz import hertz_gap
 from lube.types import Array
 
@@ -47,32 +48,6 @@ def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GR
     count = max(1, int(np.ceil(np.log(farthest / _EVEN) / np.log(growth))))
     half = np.concatenate([even, _EVEN * growth ** np.arange(1, count + 1)]).round(6)
     return np.concatenate([-half[:0:-1], half])
-
-
-def six_digits(values: Array) -> Array:
-    """Round to six digits: further ones depend on the processor.
-
-    Parameters
-    ----------
-    values : numpy.ndarray
-        Values; NaN stays NaN.
-
-    Returns
-    -------
-    numpy.ndarray
-        The values, rounded to six significant digits.
-
-    Examples
-    --------
-    >>> six_digits(np.array([0.0, 1.23456789e-6])).tolist()
-    [0.0, 1.23457e-06]
-    """
-    return rounded(values, 6)
-
-
-def rounded(values: Array, digits: int) -> Array:
-    """Round to some digits; see `six_digits`."""
-    return np.vectorize(lambda value: float(f"{value:.{digits}g}"), otypes=[float])(values)
 
 
 def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.DataArray:

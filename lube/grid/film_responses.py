@@ -12,9 +12,10 @@ import math
 import numpy as np
 import xarray as xr
 
+from lube.digits import six_digits
 from lube.ehl.line_contact import ConvergenceError, FilmProfile, one_blas_thread
 from lube.ehl.response import WaveResponse, at_wavelengths
-from lube.grid.film_profiles import film_positions, six_digits
+from lube.grid.film_profiles import film_positions
 from lube.grid.operating_points import surface_speeds
 from lube.surfaces.lay import stretched
 from lube.surfaces.synthetic import amplitudes_across_lay, wave_amplitudes

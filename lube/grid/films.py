@@ -8,9 +8,10 @@ from functools import cached_property, partial
 import numpy as np
 import xarray as xr
 
+from lube.digits import six_digits
 from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
-from lube.grid.film_profiles import over_positions, six_digits
+from lube.grid.film_profiles import over_positions
 from lube.grid.film_responses import surface_responses, wave_responses
 from lube.grid.load_sharing import share_load, surface_load_share
 from lube.physics import dimensionless, hertz

@@ -6,8 +6,8 @@ from itertools import chain
 import numpy as np
 import xarray as xr
 
+from lube.digits import six_digits
 from lube.errors import DataError
-from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_sum, models

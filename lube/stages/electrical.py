@@ -6,7 +6,7 @@ import xarray as xr
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import strip_films, surface_contact
 from lube.contact.windows import study_windows
-from lube.grid.film_profiles import six_digits
+from lube.digits import six_digits
 from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip, known_films, operating_points

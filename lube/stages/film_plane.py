@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from lube.digits import six_digits
 from lube.ehl.film_formulas import FORMULAS
 from lube.ehl.line_contact import profiles_of
-from lube.grid.film_profiles import six_digits
 from lube.physics.dimensionless import dimensionless_material
 from lube.schema import label, with_dims
 from lube.study.study import Study

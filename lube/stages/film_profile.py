@@ -4,8 +4,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from lube.digits import rounded
 from lube.ehl.line_contact import FilmProfile
-from lube.grid.film_profiles import over_positions, rounded
+from lube.grid.film_profiles import over_positions
 from lube.grid.films import FilmGroups, hertz_contact
 from lube.schema import POINT_DIMS, label
 from lube.study.rollers import RollerPair

@@ -12,10 +12,10 @@ import xarray as xr
 from lube.contact.rough_pair import drawn
 from lube.contact.rough_piece import RoughPiece
 from lube.contact.windows import ContactWindows
+from lube.digits import rounded
 from lube.ehl.line_contact import ConvergenceError, one_blas_thread
 from lube.ehl.response import WaveResponse
 from lube.ehl.transient import RoughPassage, pass_wave
-from lube.grid.film_profiles import rounded
 from lube.grid.films import FilmGroups, film_at, hertz_contact
 from lube.grid.gap import Gap
 from lube.grid.levels import rolling

@@ -4,8 +4,8 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.digits import six_digits
 from lube.ehl.line_contact import one_blas_thread
-from lube.grid.film_profiles import six_digits
 from lube.grid.levels import rolling
 from lube.grid.operating_points import by_contact_model
 from lube.inference.record_curves import realised_shares

@@ -5,8 +5,8 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
+from lube.digits import six_digits
 from lube.ehl.line_contact import one_blas_thread
-from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS, label
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.indices import morris, sobol

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from lube.grid.film_profiles import six_digits
+from lube.digits import six_digits
 from lube.schema import POINT_DIMS, label
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.runs import SEEDS, Model, design, models, run, runs_of_batch

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from lube.grid.film_profiles import six_digits
+from lube.digits import six_digits
 from lube.grid.films import FilmGroups, hertz_contact
 from lube.schema import label, values_with_limits
 from lube.statistics.confidence import mean_interval

@@ -6,7 +6,7 @@ import os
 
 import numpy as np
 
-from lube.grid.film_profiles import six_digits
+from lube.digits import six_digits
 from lube.study.roller_topography import RollerTopography
 from lube.study.topography_files import read_topography
 from lube.surfaces.measured_line import closed_line, repeated_line

@@ -7,8 +7,8 @@ from made import made
 from studies import CONFIG
 
 from lube.contact.windows import study_windows
+from lube.digits import six_digits
 from lube.errors import DataError
-from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
 from lube.sensitivity import indices, runs
 from lube.sensitivity.conditions import Deviating
