@@ -139,5 +139,6 @@ def _spline(axes, values):
 def _ratio(ratios, shape):
     """Flat film in which as many points touch within the contact."""
     touching = scipy.special.log_ndtr(-ratios * shape)
-    mean = scipy.special.logsumexp(touching, axis=1) - np.log(np.count_nonzero(INSIDE))
+    most = touching.max(axis=1)  # so that the smallest probabilities do not underflow
+    mean = most + np.log(np.exp(touching - most[:, None]).sum(axis=1) / np.count_nonzero(INSIDE))
     return -scipy.special.ndtri_exp(np.minimum(mean, -1e-12))
