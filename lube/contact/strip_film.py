@@ -85,12 +85,12 @@ class StripFilm:
         """
         return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
 
-    def answered(self, surface: Surface, rows: Pair, threads=1) -> AnsweredStrip | None:
-        """Find what the oil adds to a surface, for covariances over rows before and after."""
+    def answered(self, surface: Surface, *rows: int) -> AnsweredStrip | None:
+        """Find what the oil adds to a surface, if rows before and after a height are looked at."""
         if self.answers is None or not any(one.shapes.size for one in self.answers):
             return None
         columns = self._columns(surface.spacing[1])
-        return AnsweredStrip(self.answers, surface, columns[0], columns.size, *rows, threads)
+        return AnsweredStrip(self.answers, surface, columns[0], columns.size, *rows)
 
     def contacts(
         self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0

@@ -1,5 +1,6 @@
 """What the oil adds to rough surfaces across a strip: the response of the film to their waves."""
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -144,15 +145,14 @@ class AnsweredStrip:
         Position of the strip's first column, m from the line of centres.
     columns : int
         Columns of the strip.
-    before, after : int
-        Rows before and after that of a height with which its covariances are wanted.
-    threads : int or None, optional
-        Threads that share the work, None for one on each core; they do not change the results.
+    before, after : int, optional
+        Rows before and after that of a height that are looked at.
 
     Attributes
     ----------
     rms : numpy.ndarray, shape (columns,)
-        Rms height in the gap at each column, over that of the surfaces as drawn.
+        Rms height in the gap at each column, over that of the surfaces as drawn; from
+        `with_covariances` on.
     shift : int
         Binary logarithm of the number of points of the surface from node to node.
     points : tuple of int
@@ -165,16 +165,16 @@ class AnsweredStrip:
         surface: Surface,
         begin: float,
         columns: int,
-        before: int,
-        after: int,
-        threads: int | None = 1,
+        before: int = 0,
+        after: int = 0,
     ) -> None:
         are_alike = answers[0] is answers[1]
         self.answers = answers[:1] if are_alike else answers
         self.shift = self.answers[0].shift(surface.spacing[1])
         self.points = tuple(number >> self.shift for number in surface.points)
-        nodes = np.arange(((columns - 1) >> self.shift) + 2) << self.shift
-        position = begin + nodes * surface.spacing[1]
+        self._surface, self._columns = surface, np.arange(columns)
+        self._nodes = np.arange(((columns - 1) >> self.shift) + 2) << self.shift
+        position = begin + self._nodes * surface.spacing[1]
         self._shapes = [one.at(position / one.half_width) for one in self.answers]
         # The waves that the oil changes: their places among those of the surface.
         coarser = zip(self.points, surface.coarse, strict=True)
@@ -189,36 +189,54 @@ class AnsweredStrip:
         waves = units[1] * self._along, units[0] * self._down
         filters = [one.filters_at(*waves) for one in self.answers]
         self._filters = [each.astype(np.complex64) for each in filters]
-        variances = surface.variances[self._down, self._along] / surface.rms**2
-        curvatures = surface.curvatures[self._down, self._along]
-        first_part = surface.first_part[self._down, self._along]
-        parts = [1.0] if are_alike else [first_part, 1.0 - first_part]
-        self._first_lag = -before >> self.shift
-        lags = np.arange(self._first_lag, (after >> self.shift) + 2) << self.shift
-        added = [
-            self._added(part * variances, curvatures, *each, nodes, lags, surface, threads)
-            for part, *each in zip(parts, filters, self._shapes, strict=True)
-        ]
-        self._covariances = np.ascontiguousarray(sum(added))
-        own = np.diagonal(self._covariances[0, :, -self._first_lag])
-        self.rms = np.sqrt(1.0 + np.interp(np.arange(columns), nodes, own))
+        self._rows_of_nodes = np.arange(-before >> self.shift, (after >> self.shift) + 2)
+        self._covariances = np.zeros((2, 0, 0, 0), np.float32)
 
-    def _added(self, variances, curvatures, filters, shapes, nodes, lags, surface, threads):
+    def with_covariances(self, threads: int | None = 1) -> "AnsweredStrip":
+        """Return the strip with covariances, for points that are known to touch.
+
+        Parameters
+        ----------
+        threads : int or None, optional
+            Threads that share the work, None for one on each core; they do not change the results.
+        """
+        surface, place = self._surface, (self._down, self._along)
+        variances = surface.variances[place] / surface.rms**2
+        first_part = surface.first_part[place]
+        parts = [first_part, 1.0 - first_part] if len(self.answers) > 1 else [1.0]
+        each = zip(parts, self._filters, self._shapes, strict=True)
+        added = [self._added(part * variances, *own, threads) for part, *own in each]
+        found = copy.copy(self)
+        found._covariances = np.ascontiguousarray(sum(added))
+        own = np.diagonal(found._covariances[0, :, -self._rows_of_nodes[0]])
+        found.rms = np.sqrt(1.0 + np.interp(self._columns, self._nodes, own))
+        return found
+
+    def _added(self, variances, filters, shapes, threads):
         """Sum what the oil adds to the covariances of one surface, with heights and curvatures."""
+        surface, shapes = self._surface, shapes.astype(np.float32)
+        curvatures = surface.curvatures[self._down, self._along]
         down_unit, unit = (2.0 * np.pi / number for number in surface.points)
-        downs = np.arange(self._down.max() + 1)
+        phases = unit * self._nodes[:, None] * np.arange(self._along.max() + 1)
+        at_nodes = np.exp(1j * phases).astype(np.complex64)
+        by_down = np.argsort(np.abs(self._down), kind="stable")
+        counts = np.bincount(np.abs(self._down))
+        downs, ends = np.arange(counts.size), np.cumsum([0, *counts])
         # Waves up and down the rollers together: their sums, and differences unless they are alike.
         parts = [np.cos] if surface.is_mirrored else [np.cos, np.sin]
-        of_waves = np.empty((len(parts), downs.size, 2, nodes.size, nodes.size), np.float32)
+        sides = self._nodes.size, self._nodes.size
+        of_waves = np.empty((len(parts), downs.size, 2, *sides), np.float32)
 
         def fill(down):
-            here = np.flatnonzero(np.abs(self._down) == down)
-            drawn = np.exp(1j * unit * nodes[:, None] * self._along[here])
-            changed = (1.0 + shapes @ filters[here].T) * drawn
+            here = by_down[ends[down] : ends[down + 1]]
+            drawn = at_nodes.take(self._along[here], axis=1)
+            by_oil = (shapes @ filters[here].T) * drawn
+            changed = drawn + by_oil
             # Waves along rolling stand for their mirror images too.
-            power = variances[here] * np.where(self._along[here], 2.0, 1.0)
-            curved, by_oil = drawn * (power * curvatures[here]), changed - drawn
-            for part, signs in enumerate([1.0, 1j * np.sign(self._down[here])][: len(parts)]):
+            power = (variances[here] * np.where(self._along[here], 2.0, 1.0)).astype(np.float32)
+            curved = drawn * (power * curvatures[here].astype(np.float32))
+            ahead = np.sign(self._down[here]).astype(np.complex64)
+            for part, signs in enumerate([np.complex64(1.0), 1j * ahead][: len(parts)]):
                 as_drawn = drawn * (power * signs)
                 stays = _products(drawn, as_drawn[:1]), _products(drawn[:1], as_drawn)
                 heights = _products(changed, changed * (power * signs))
@@ -227,7 +245,8 @@ class AnsweredStrip:
                 of_waves[part, down] = heights, _products(by_oil, curved * signs)
 
         on_threads(fill, downs, threads)
-        along = [one(down_unit * lags[:, None] * downs) for one in parts]
+        lags = self._rows_of_nodes[:, None] << self.shift
+        along = [one(down_unit * lags * downs) for one in parts]
         along = np.stack(along).astype(np.float32)
         return np.einsum("prd,pdktc->ktrc", along, of_waves, optimize=True)
 
@@ -253,7 +272,7 @@ class AnsweredStrip:
                 rough = scipy.fft.irfft2(changed, self.points, norm="forward")
                 fields.append(np.pad(rough, (0, 1), mode="wrap"))
         shapes = np.hstack(self._shapes).astype(np.float32)
-        first = self._first_lag
+        first = self._rows_of_nodes[0].item()
         # For another layout in memory Numba would compile the kernels once more.
         stacked = np.ascontiguousarray(np.stack(fields, axis=-1))
         return Answered(stacked, shapes, self._covariances, first, self.shift)
@@ -261,4 +280,4 @@ class AnsweredStrip:
 
 def _products(some, others):
     """Real part of the products of conjugate waves with others, summed over the waves."""
-    return some.view(float) @ others.view(float).T
+    return some.view(np.float32) @ others.view(np.float32).T

@@ -103,7 +103,7 @@ class _Passage:
         self._film = strip.films(along) / spec.height_step
         self._sharp = strip.breaking_curvatures(along, sharp) / spec.height_step
         self._lowest = _lowest(strip, spec, pair.length, sharp) / spec.height_step
-        self._has_edges, self._answer = strip.has_edges, strip.answered(surface, (1, 1))
+        self._has_edges, self._answer = strip.has_edges, strip.answered(surface)
         self.lowest_drawn = self._lowest
         if self._answer:
             self.lowest_drawn -= _most_added(spec, strip) / spec.height_step

@@ -50,6 +50,8 @@ SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
 STRIPS = 750
 """Strips on each surface."""
+SEVERAL = 3.0
+"""Expected number of contacts above which half as many strips tell the probability as well."""
 MANY = 30.0
 """Expected number of contacts above which contact is certain, and contacts are counted."""
 CERTAIN = 0.95
@@ -221,21 +223,22 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
     for point in np.flatnonzero(wanted):
         expected[:, point] = strips[point].expected(spec, length, sharp[point])
     certain = expected[0] > MANY
+    counts = np.where(expected[0] > SEVERAL, STRIPS // 2, STRIPS)
     found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
 
-    def sample(surface, some, certain):
+    def sample(surface, some, counts):
         own = [changed[point] for point in some]
-        sampled = _sampled(pair, surface, own, certain, sharp[some], seeds, threads)
+        sampled = _sampled(pair, surface, own, counts, sharp[some], seeds, threads)
         for name, values in sampled.items():
             found[name][some] = values
 
     for surface, alike in _on_alike_grids(spec, strips):
         some = alike[wanted[alike]]
         if some.size:
-            sample(surface, some, certain[some])
+            sample(surface, some, np.where(certain, FEWER_STRIPS, counts)[some])
         holds = certain[some] & (found["breakthrough_probability"][some] < CERTAIN)
         if holds.any():  # few strips do not tell how often the layer breaks
-            sample(surface, some[holds], np.zeros(holds.sum(), bool))
+            sample(surface, some[holds], counts[some[holds]])
     perimeters = np.multiply(spec.points, spec.spacing)
     found["pair_deviation"] = np.full(len(strips), np.nan)
     recurring = RecurringContacts(spec) if perimeters[0] != perimeters[1] else None
@@ -291,10 +294,10 @@ def smallest_contacts(spec: LineSpecLike, strips: Sequence[StripFilm]) -> Array:
     return 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
 
 
-def _sampled(pair, surface, strips, certain, sharp, seeds, threads):
+def _sampled(pair, surface, strips, counts, sharp, seeds, threads):
     """Probabilities and numbers of contacts, with their intervals, shape (strips,) each.
 
-    `certain` says of each strip whether contact is certain there.
+    Of each strip `counts` are sampled on a surface: `FEWER_STRIPS` where contact is certain.
     """
     down, along = surface.spacing
     reach, step = _reach(pair.spec, down), pair.spec.height_step
@@ -304,9 +307,10 @@ def _sampled(pair, surface, strips, certain, sharp, seeds, threads):
         strip.breaking_curvatures(along, own) / step
         for strip, own in zip(strips, sharp, strict=True)
     ]
+    answered = [strip.answered(surface, *rows) for strip in strips]
     with one_blas_thread():
-        answered = [strip.answered(surface, rows, threads) for strip in strips]
-    strips = list(zip(films, limits, certain.tolist(), answered, strict=True))
+        answered = [oil and oil.with_covariances(threads) for oil in answered]
+    strips = list(zip(films, limits, counts.tolist(), answered, strict=True))
     covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
 
     def on_one_surface(of_one):
@@ -316,13 +320,13 @@ def _sampled(pair, surface, strips, certain, sharp, seeds, threads):
     first, numbers = map(np.stack, zip(*found, strict=True))
     rows = max(int(pair.length / down), 1)
     results = {}
-    for which, (name, counts) in enumerate(_NUMBERS.items()):
+    for which, (name, of_contacts) in enumerate(_NUMBERS.items()):
         limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
         results |= values_with_limits(name, limits)
-        results |= values_with_limits(counts, mean_interval(rows * numbers[:, :, which]))
+        results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
     in_contact, broken = (mean_interval(along * numbers[:, :, which]) for which in (2, 3))
     results |= values_with_limits(_RATIO, broken)  # m, of the strip's width
-    contacts, sampled = results["contacts_upper"], STRIPS * len(seeds)
+    contacts, sampled = results["contacts_upper"], counts * len(seeds)
     for name in ("breakthroughs_upper", "breakthrough_probability_upper", f"{_RATIO}_upper"):
         of_contact = in_contact[2] if name == f"{_RATIO}_upper" else contacts
         results[name] = breakthrough_limit(results[name], of_contact, sampled)
@@ -353,12 +357,11 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
     tops = tops, np.maximum.reduceat(tops, np.arange(0, surface.points[0], GROUP))
     longest, around = reach
     first, numbers = [], []
-    for film, sharp, is_certain, answer in strips:
+    for film, sharp, count, answer in strips:
         rms, shift, by_oil = surface.rms, 0, NO_ANSWER
         if answer:
             rms, shift = rms * answer.rms, answer.shift
             by_oil = answer.of_waves(both if len(answer.answers) > 1 else [waves])
-        count = FEWER_STRIPS if is_certain else STRIPS
         # Known points of strips, and the weight of each strip. The density of a known height is
         # that of all heights, times exp(-fading overlap): a normal one with another mean.
         rms = np.broadcast_to(rms, film.shape)
@@ -381,7 +384,7 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
             surface.diagonal,
         )
         first.append(weight * np.stack(each))
-        if is_certain:
+        if count == FEWER_STRIPS:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
             contacts = contacts_per_row(
                 fields, covariances, some, film, sharp, around, by_oil, surface.diagonal

@@ -66,7 +66,7 @@ def surface_traces(
             point: (
                 (strip.films(along) / spec.height_step).astype(np.float32),
                 strip.breaking_curvatures(along, sharp) / spec.height_step,
-                strip.answered(surface, (1, 1)),
+                strip.answered(surface),
             )
             for point, strip in enumerate(strips)
             if strip

@@ -141,7 +141,7 @@ def _unseen_limit(windows):
     return 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
 
 
-def breakthrough_limit(upper: Values, contact: Values, sampled: int) -> Values:
+def breakthrough_limit(upper: Values, contact: Values, sampled: Values) -> Values:
     """Upper limit of breakthrough, also where none of the sampled contacts has one.
 
     Parameters
@@ -150,7 +150,7 @@ def breakthrough_limit(upper: Values, contact: Values, sampled: int) -> Values:
         Upper limit by the scatter, which is 0 there.
     contact : float or numpy.ndarray
         Upper limit of the probability of geometric contact, or of the number of contacts.
-    sampled : int
+    sampled : int or numpy.ndarray of int
         Number of sampled contacts.
 
     Returns
