@@ -102,7 +102,7 @@ def whole_points(length: Array, spec: LineSpec) -> Array:
 
 def _parts(study):
     """Part of each turn that the rig runs: only the last may be less than 1."""
-    return np.minimum(study.rig.revolutions - np.arange(math.ceil(study.rig.revolutions)), 1.0)
+    return np.minimum(study.rig.revolutions - np.arange(study.rig.turns), 1.0)
 
 
 def _line_runs(study, points, numbers):
@@ -141,7 +141,7 @@ def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
     """
     drift, pairs = study.rig.drift, iter(pairs)
     pair = next(pairs)
-    for turn in range(math.ceil(study.rig.revolutions)):
+    for turn in range(study.rig.turns):
         if turn and drift > 0.0:
             both = zip(pair, next(pairs), strict=True)
             pair = tuple(_renewed(old, new, drift) for old, new in both)

@@ -4,6 +4,7 @@ Every default except the threshold of 100 ohm is assumed: the paper says nothing
 Voltages far below a volt are usual, so that the film does not break down electrically.
 """
 
+import math
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field, StrictInt, model_validator
@@ -139,6 +140,11 @@ class Rig(StrictModel, validate_default=True):
     def has_surfaces(self) -> bool:
         """Whether rough surfaces touch on the simulated rig, and not lines."""
         return self.contact_model == "surface"
+
+    @property
+    def turns(self) -> int:
+        """Number of revolutions, of which the last may be run in part."""
+        return math.ceil(self.revolutions)
 
     @property
     def reading(self) -> str:

@@ -6,7 +6,6 @@ follows from their JSON schema and the one-line errors from their validators.
 stage and those after it.
 """
 
-import math
 from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any
@@ -316,7 +315,7 @@ class Study(StrictModel):
 
         One for each pair and, if the roughness drifts, one more for each further revolution.
         """
-        drawn = math.ceil(self.rig.revolutions) if self.rig.drift > 0.0 else 1
+        drawn = self.rig.turns if self.rig.drift > 0.0 else 1
         return range(RIG_REALISATIONS, RIG_REALISATIONS + self.rig.pairs * drawn)
 
     def check_window(self, force: float, key: str = "operating_grid.force") -> None:
