@@ -31,7 +31,13 @@ two times between which the rollers move by s, and the surfaces by :math:`v_i s 
 
 A summit of the slower surface stays in the strip for long, and one of a surface at rest for ever,
 where it touches again and again. One of a small roller returns with each of its turns.
+
+If the roughness of both surfaces drifts, and heights have the correlation c with those of an
+earlier turn, both turns share the fraction :math:`\chi` with :math:`c \rho` in place of
+:math:`w_i \rho_i`. With it the correlation of their shares follows in the same way.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 import scipy
@@ -43,6 +49,8 @@ from lube.types import Array, Pair
 
 _LEVELS = np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 4001))
 """Correlations at which places of a surface are counted."""
+_ANGLES = 65
+"""Angles whose cosines are the correlations of a drift."""
 
 
 def pair_deviation(probability: float, lags: Array, common: Array, perimeter: float) -> float:
@@ -168,6 +176,29 @@ def slip_ratio(
     return np.trapezoid(weight * np.expm1(groups * alike), way) / rolling
 
 
+def drifting_shares(
+    probability: float, lags: Array, common: Array, kept: Callable[[Array], Array]
+) -> Callable[[Array], Array]:
+    """Find how the shares of two turns are correlated while the roughness drifts.
+
+    Parameters
+    ----------
+    probability, lags, common
+        As in `pair_deviation`.
+    kept : callable
+        Fraction of contacts that both turns share, by the correlation of the heights in them.
+
+    Returns
+    -------
+    callable
+        Correlation of the shares, by that of the heights, from 0 to 1.
+    """
+    # Near the correlation 1 the fraction falls as its angle does.
+    angles = np.linspace(0.0, 0.5 * np.pi, _ANGLES)
+    alike = persistent_part(probability, lags, common, kept(np.cos(angles)))
+    return lambda correlation: np.interp(np.arccos(correlation), angles, alike)
+
+
 class RecurringContacts:
     """The fraction of contacts that recurs if one surface meets another part of the other.
 
@@ -200,6 +231,25 @@ class RecurringContacts:
         """
         *alone, both = np.einsum("pl,l->p", self._counts, _excess(film))
         return np.array(alone) / both
+
+    def drifted(self, film: float, correlation: Array) -> Array:
+        """Find the fraction that is left after a drift of both surfaces.
+
+        Parameters
+        ----------
+        film : float
+            As in `at`.
+        correlation : numpy.ndarray
+            Correlations of the heights with those before the drift, from 0 to 1.
+
+        Returns
+        -------
+        numpy.ndarray
+            Of the same shape.
+        """
+        excess, counts = _excess(film), self._counts[-1]
+        left = np.interp(np.multiply.outer(correlation, _LEVELS), _LEVELS, excess)
+        return np.einsum("...l,l->...", left, counts) / np.einsum("l,l->", excess, counts)
 
 
 def _excess(film):

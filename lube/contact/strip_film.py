@@ -18,7 +18,7 @@ from lube.physics import excursions
 from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.rare_contact import likely_part
 from lube.surfaces.rough_surface import Surface, surface_waves
-from lube.surfaces.spectra import pair_moments, spectrum_moments
+from lube.surfaces.spectra import wave_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair
 
@@ -231,6 +231,9 @@ class StripFilm:
 def surface_moments(spec: LineSpecLike) -> excursions.SurfaceMoments:
     """Moments of the surface that a pair of lines stands for, expected from their spectra.
 
+    They are those of its waves. On the grid of the lines, where slopes are finite differences,
+    slopes and curvatures are smaller.
+
     Parameters
     ----------
     spec : LineSpecLike
@@ -242,7 +245,7 @@ def surface_moments(spec: LineSpecLike) -> excursions.SurfaceMoments:
         Moments of the sum of both rollers' surfaces.
     """
     slopes = _slopes(spec, 0) + _slopes(spec, 1)
-    m0, _, m4 = pair_moments(spec)
+    m0, _, m4 = sum(wave_moments(spec, roller) for roller in range(len(spec.lines))).tolist()
     return excursions.SurfaceMoments(m0, *slopes.tolist(), m4)
 
 
@@ -264,7 +267,7 @@ def curvature_moments(spec: LineSpecLike) -> Array | None:
     found = np.zeros((3, 3))
     for roller, line in enumerate(spec.lines):
         # Curvatures along the lay and across it.
-        part, square = line.lay_ratio**-2.0, spectrum_moments(spec, roller)["rms_curvature"] ** 2
+        part, square = line.lay_ratio**-2.0, wave_moments(spec, roller)[2]
         ridges, both, across = np.array([3.0 * part**2, part, 3.0]) * (
             square / (3.0 + 2.0 * part + 3.0 * part**2)
         )
@@ -298,7 +301,7 @@ def height_moments(spec: LineSpecLike) -> Array:
     found = np.zeros((2, 1, 4, 4))
     for roller, moments in enumerate(found[:, 0]):
         along, across, mixed = _slopes(spec, roller)
-        moments[0, 0] = spectrum_moments(spec, roller)["rms_height"] ** 2
+        moments[0, 0] = wave_moments(spec, roller)[0]
         moments[1:3, 1:3] = [[along, mixed], [mixed, across]]
     # What moves along rolling changes by the slope there, with the opposite sign.
     found[..., 3] = -found[..., 1]
@@ -308,7 +311,7 @@ def height_moments(spec: LineSpecLike) -> Array:
 
 def _slopes(spec, roller):
     """Mean square slopes of a surface along rolling and along the rollers, and their product."""
-    line, slope = spec.lines[roller], spectrum_moments(spec, roller)["rms_slope"] ** 2
+    line, slope = spec.lines[roller], wave_moments(spec, roller)[1]
     ridges = slope / (1.0 + line.lay_ratio**2)
     across = slope - ridges
     cosine, sine = cosine_and_sine(line.lay_angle)

@@ -5,11 +5,18 @@ the rollers' sizes. Its parts follow from the theory of `lube.contact.pair_scatt
 """
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
-from lube.contact.pair_scatter import RecurringContacts, persistent_part, slip_ratio, turn_ratio
+from lube.contact.pair_scatter import (
+    RecurringContacts,
+    drifting_shares,
+    persistent_part,
+    slip_ratio,
+    turn_ratio,
+)
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
@@ -97,14 +104,18 @@ def surface_scatter(
     def of_record(slip, turns, share, strip):
         if strip is None or np.isnan(share):
             return [np.nan] * len(turns)
-        contacts = share, *strip.common(spec, length), recurring.at(strip.levels(spec).min())
+        film, common = strip.levels(spec).min(), strip.common(spec, length)
+        contacts = share, *common, recurring.at(film)
         passages = [strip.passage_width(spec, length, each) for each in (slip, 0.0)]
         perimeters = np.multiply(spec.points, spec.spacing)
         known, rolling = (*contacts, passages, slip, perimeters), turn_ratio(*contacts, perimeters)
         part = persistent_part(*contacts) * spec.points[0] / spec.points / slip_ratio(*known)
+        if slip == 0.0 and spec.points[0] == spec.points[1]:
+            part = np.zeros(2)  # both surfaces recur together
         motion = speed_ratios(slip), spec.points, reach, part, drift
+        alike = drifting_shares(share, *common, partial(recurring.drifted, film))
         of_turn = (slip_ratio(*known, min(one, 1.0)) for one in turns)
-        later = (scatter_ratio(max(one, 1.0), *motion) for one in turns)
+        later = (scatter_ratio(max(one, 1.0), *motion, alike=alike) for one in turns)
         return [first * more / rolling for first, more in zip(of_turn, later, strict=True)]
 
     found = map(of_record, slips.tolist(), durations, shares, strips)

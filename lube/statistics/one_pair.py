@@ -8,6 +8,7 @@ roughness changes.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
@@ -104,18 +105,21 @@ def distinct_alignments(turns: float, ratios: Ratios, points: Points, reach: flo
     return min(np.unique((offsets + reach / 2.0) % perimeter // reach).size, turns)
 
 
-def drift_factor(turns: float, drift: float) -> float:
+def drift_factor(
+    turns: float, drift: float, alike: Callable[[Array], Array] | None = None
+) -> float:
     r"""Variance of a share over several turns while the roughness drifts, over that of one turn.
 
     Each turn renews the fraction `drift` of the variance of the heights, so heights :math:`k`
-    turns apart have the correlation :math:`c^k`. Shares are correlated no more than the heights
-    from which they follow (Gebelein's inequality), so the variance of their mean is at most that
-    of a first-order autoregressive series:
+    turns apart have the correlation :math:`c^k`, and shares some correlation :math:`r(c^k)`:
 
     .. math::
 
-        \frac{1}{T} \left( 1 + 2 \sum_{k=1}^{T-1} \left( 1 - \frac{k}{T} \right) c^k \right),
+        \frac{1}{T} \left( 1 + 2 \sum_{k=1}^{T-1} \left( 1 - \frac{k}{T} \right) r(c^k) \right),
         \qquad c^2 = 1 - \mathrm{drift}
+
+    Shares are correlated no more than the heights from which they follow (Gebelein's inequality).
+    So where r is not known, :math:`r(c) = c` gives an upper limit.
 
     Parameters
     ----------
@@ -123,6 +127,8 @@ def drift_factor(turns: float, drift: float) -> float:
         Number of turns :math:`T`, above 0.
     drift : float
         From 0 (the roughness stays the same) to 1 (it is new in each turn).
+    alike : callable, optional
+        Function r of the correlation of the heights; by default r(c) = c.
 
     Returns
     -------
@@ -142,6 +148,7 @@ def drift_factor(turns: float, drift: float) -> float:
     turns = max(turns, 1.0)
     lags = np.arange(1, math.ceil(turns))
     correlation = np.sqrt(1.0 - drift) ** lags
+    correlation = correlation if alike is None else alike(correlation)
     return min((1.0 + 2.0 * np.sum((1.0 - lags / turns) * correlation)) / turns, 1.0)
 
 
@@ -153,6 +160,7 @@ def scatter_ratio(
     persistent: Pair,
     drift: float,
     known: float = 1.0,
+    alike: Callable[[Array], Array] | None = None,
 ) -> float:
     r"""Variance of the share of one pair's record about the mean, over that of a known record.
 
@@ -184,6 +192,9 @@ def scatter_ratio(
         As in `drift_factor`.
     known : float, optional
         Revolutions of the known record, whose variance is :math:`s_1^2`; without drift.
+    alike : callable, optional
+        As in `drift_factor`, for the joint effect of both lines. For the effects of either line
+        alone the upper limit is taken.
 
     Returns
     -------
@@ -210,7 +221,7 @@ def scatter_ratio(
     def together(turns, drift):
         alignments = distinct_alignments(turns, ratios, points, reach)
         visits, renewed = turns / alignments, 1.0 - (1.0 - drift) ** alignments
-        return repeat_factor(visits) / alignments * drift_factor(visits, renewed)
+        return repeat_factor(visits) / alignments * drift_factor(visits, renewed, alike)
 
     by_either = alone(known)
     later = alone(turns) / max(by_either, 1.0) * drift_factor(turns, drift)

@@ -4,6 +4,7 @@ import numpy as np
 import scipy.fft
 
 from lube.surfaces.synthetic import LineSpecLike, wave_amplitudes
+from lube.types import Array
 
 
 def line_moments(line: np.ndarray, spacing: float) -> dict[str, float]:
@@ -122,6 +123,27 @@ def pair_moments(spec: LineSpecLike) -> list[float]:
     """
     lines = [spectrum_moments(spec, roller).values() for roller in (0, 1)]
     return [sum(root**2 for root in roots) for roots in zip(*lines, strict=True)]
+
+
+def wave_moments(spec: LineSpecLike, roller: int) -> Array:
+    r"""Moments of a line's waves themselves, without a grid.
+
+    .. math:: m_{2n} = \frac12 \sum_k a_k^2 q_k^{2n}, \qquad n = 0, 1, 2
+
+    Parameters
+    ----------
+    spec, roller
+        As in `spectrum_moments`.
+
+    Returns
+    -------
+    numpy.ndarray
+        :math:`m_0` (m^2), :math:`m_2` and :math:`m_4` (1/m^2).
+    """
+    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    waves = np.arange(first_wave, first_wave + amplitudes.size)
+    wave_vector = 2.0 * np.pi / (spec.points[roller] * spec.spacing) * waves
+    return 0.5 * np.array([np.sum(amplitudes**2 * wave_vector**n) for n in (0, 2, 4)])
 
 
 def autocovariance(spec: LineSpecLike, roller: int, lags: int) -> np.ndarray:

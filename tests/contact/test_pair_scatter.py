@@ -1,5 +1,7 @@
 """One pair of surfaces: limits of the theory, then surfaces drawn and paired crosswise."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import scipy.fft
@@ -8,13 +10,14 @@ from scipy.stats import multivariate_normal
 
 from lube.contact.pair_scatter import (
     RecurringContacts,
+    drifting_shares,
     pair_deviation,
     persistent_part,
     slip_ratio,
 )
 from lube.contact.strip_film import StripFilm, surface_moments
 from lube.grid.discretise import speed_ratios
-from lube.statistics.one_pair import repeat_factor
+from lube.statistics.one_pair import drift_factor, repeat_factor
 from lube.surfaces.rough_surface import field, rough_surface
 
 WIDTH, LENGTH = 3e-4, 5e-4
@@ -128,6 +131,56 @@ def test_turns_with_slip_scatter_as_theory_says(make_spec, slip):
     # Of 60 pairs the scatter is known to 9 %.
     assert np.all(np.abs(np.log(ratios)) < 0.3)
     assert abs(np.mean(np.log(ratios))) < 0.15
+
+
+def test_turns_share_all_contacts_without_a_drift_and_none_if_it_renews_everything(make_spec):
+    recurring = RecurringContacts(make_spec(50_000, **LINES))
+    first = recurring.at(3.0)[0]
+    # The other surface has as much of the roughness, and is new.
+    assert recurring.drifted(3.0, np.array([1.0, 0.5, 0.0])) == pytest.approx(
+        [1.0, first, 0.0], abs=1e-4
+    )
+    lags, common = np.linspace(0.0, 1.0, 50), np.linspace(1.0, 0.0, 50)
+    for share in (1e-9, 0.3, 0.95):
+        known = share, lags, common, lambda correlation: recurring.drifted(3.0, correlation)
+        alike = drifting_shares(*known)(np.array([1.0, 0.99, 0.5, 0.0]))
+        assert np.all(np.diff(alike) < 0.0) and alike[1] < 0.96
+        assert alike[[0, -1]] == pytest.approx([1.0, 0.0])
+
+
+def test_turns_of_drifting_surfaces_scatter_as_theory_says(make_spec):
+    """Drawn surfaces, of which each turn renews a part."""
+    spec, turns, drift = make_spec(50_000, **LINES), 8, 0.1
+    surface, recurring = rough_surface(spec, waves=24), RecurringContacts(spec)
+    rms, side = np.sqrt(surface_moments(spec).height), surface.sides[1]
+    films = [StripFilm.flat(ratio * rms, 0.5 * WIDTH) for ratio in RATIOS]
+    columns = films[0].films(surface.spacing[1]).size
+    rows, apart = int(LENGTH / surface.spacing[0]), surface.points[0] // 10
+    shares = np.empty((len(films), turns, PAIRED))
+    for seed in range(PAIRED // 10):
+        generator, waves = np.random.default_rng(seed), 0.0
+        for turn in range(turns):
+            kept, new = (0.0, 1.0) if turn == 0 else (np.sqrt(1.0 - drift), np.sqrt(drift))
+            waves = kept * waves + new * surface.draw(generator)[2]
+            heights = spec.height_step * field(waves, surface.points)
+            tops = np.array([heights[n * apart : n * apart + rows].max(axis=0) for n in range(10)])
+            highest = scipy.ndimage.maximum_filter1d(tops, columns, axis=1, mode="wrap")
+            for film, found in zip(films, shares, strict=True):
+                found[turn, 10 * seed : 10 * seed + 10] = (highest > film.thickness(0.0)).mean(
+                    axis=1
+                )
+    ratios = []
+    for ratio, film, found in zip(RATIOS, films, shares, strict=True):
+        contacts = found.mean(), *film.common(spec, LENGTH)
+        alike = drifting_shares(*contacts, partial(recurring.drifted, ratio))
+        factors = drift_factor(turns, drift, alike), drift_factor(turns, drift)
+        of_turn, of_record = pair_deviation(*contacts, side), found.mean(axis=0).std(ddof=1)
+        ratios.append(of_record / of_turn / np.sqrt(factors))
+    expected, limit = np.transpose(ratios)
+    # Of 60 strips the scatter is known to 9 %.
+    assert np.all(np.abs(np.log(expected)) < 0.3)
+    assert abs(np.mean(np.log(expected))) < 0.15
+    assert np.mean(np.log(limit)) < -0.2
 
 
 def test_slip_that_hardly_is_one_changes_nothing(make_spec):

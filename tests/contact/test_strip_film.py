@@ -323,6 +323,17 @@ def test_the_roughness_in_the_gap_is_that_of_drawn_surfaces_as_the_oil_answers_t
     np.testing.assert_allclose(mean, strip.thickness(across), rtol=1e-12)
 
 
+@pytest.mark.parametrize("lay", [{}, {"lay_ratio": 3.0, "lay_angle": 60.0}])
+def test_moments_of_the_surface_do_not_depend_on_the_grid_of_the_lines(make_spec, lay):
+    coarse, fine = (
+        make_spec(points, longest_wavelength=4e-4, shortest_wavelength=f"{each} points", **lay)
+        for points, each in ((50_000, 4), (200_000, 16))
+    )
+    np.testing.assert_allclose(surface_moments(coarse), surface_moments(fine), rtol=1e-3)
+    if lay:
+        np.testing.assert_allclose(curvature_moments(coarse), curvature_moments(fine), rtol=1e-3)
+
+
 def test_curvatures_with_a_lay_are_those_of_the_surface(make_spec):
     """By the waves of the surface; the second roller's ridges are at an angle."""
     lay = {"lay_ratio": 3.0, "lay_angle": "30 deg"}

@@ -12,6 +12,7 @@ from lube.contact.surface_strip import strip_films, surface_contact
 from lube.grid.gap import PLAIN, Gap
 from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_scatter import surface_scatter
+from lube.statistics.one_pair import drift_factor
 
 SHARES, ANSWERED = np.array([0.05, 0.4, 0.4]), Gap("flat", "computed")
 
@@ -57,6 +58,21 @@ def test_slip_shortens_contacts_and_brings_new_alignments(busy_study):
     # The effect of either surface alone stays in any number of turns.
     later = scatter(busy_study, turns=10_000.0, slide_to_roll_ratio=0.37)
     np.testing.assert_allclose(later, many, rtol=0.3)
+
+
+def test_a_drift_of_the_roughness_averages_contacts_out_sooner_than_heights(busy_study):
+    drifting = busy_study.model_copy(
+        update={"rig": busy_study.rig.model_copy(update={"drift": 0.05})}
+    )
+    for slip in (0.0, 0.37):
+        steady, found = (
+            scatter(one, turns=20.0, slide_to_roll_ratio=slip) for one in (busy_study, drifting)
+        )
+        assert np.all(found < steady)
+        assert np.all(found > 0.04)
+    found = scatter(drifting, turns=20.0)
+    assert np.all(found < 0.85 * drift_factor(20.0, 0.05))
+    np.testing.assert_array_equal(scatter(drifting, turns=1.0), 1.0)
 
 
 def test_rollers_of_different_size_meet_in_new_alignments(busy_study):
