@@ -60,14 +60,14 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     levels = grid.force, grid.speed, study.film_formulas[:1]
     film = film_table(oil, study.rough_rollers, *levels, slide_to_roll_ratio=study.slips, **model)
     question = film, study.line_spec, study.rough_rollers
-    notes = remarks(*question)
+    notes = [*remarks(*question), *_taken_over_authors(path, study, arguments["changes"])]
     if study.has("sensitivity"):
         try:
             with located("no sensitivity study is possible: uncertainty"):
                 check_uncertainty(study)
         except LubeError as error:
             notes.append(str(error))
-        notes += _taken_over(path, study, arguments["changes"])
+        notes += _taken_over_ranges(path, study, arguments["changes"])
     lines = {
         "study": f"{study.name}: valid{', see the remarks below' if notes else ''}",
         "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),
@@ -87,7 +87,16 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     return [*lines, *(f"Remark: {note}" for note in notes)], refused
 
 
-def _taken_over(path, study, changes):
+def _taken_over_authors(path, study, changes):
+    """Say whose names are those of the study that this one is based on."""
+    content = read_yaml(path, StudyError)
+    own = {*(content.get("about") or ()), *((changes or {}).get("about") or ())}
+    if "based_on" in content and "creators" not in own and study.about.creators:
+        names = "; ".join(one.name for one in study.about.creators)
+        yield f"about.creators: {content['based_on']} names {names}; put in your own"
+
+
+def _taken_over_ranges(path, study, changes):
     """Say which ranges are those of the study that this one is based on."""
     content = read_yaml(path, StudyError)
     own = {*(content.get("uncertainty") or ()), *((changes or {}).get("uncertainty") or ())}

@@ -1,6 +1,7 @@
 """`lube check`: what a study will compute, and the records that it cannot use."""
 
 import pytest
+import yaml
 from refusals import one_line
 from studies import CONFIG, PAPER, SMOKE
 
@@ -139,6 +140,15 @@ def test_a_list_without_usable_records_is_refused(tmp_path):
     assert check_study("mine.yaml")[1] == [
         "records.csv: no record can be used, need at least one usable record"
     ]
+
+
+@pytest.mark.parametrize("own", [{}, {"about": {"creators": [{"name": "Popova, Elena"}]}}])
+def test_authors_of_the_base_are_named_unless_they_are_replaced(tmp_path, own):
+    content = {"based_on": str(CONFIG / "paper.yaml"), "name": "mine", "uncertainty": None} | own
+    file = tmp_path / "mine.yaml"
+    file.write_text(yaml.safe_dump(content), encoding="utf-8")
+    remarks = [line for line in check_study(file)[0] if "names The authors of lube" in line]
+    assert len(remarks) == (not own)
 
 
 def test_ranges_of_the_base_are_named_unless_they_are_replaced(tmp_path):
