@@ -192,12 +192,17 @@ def other_names(points: xr.Dataset) -> list[str]:
         are not the same for all, such as ``n-dodecane``; empty where they are.
     """
     columns = [
-        [f"{word}{value}" for value in points[name].values]
+        [f"{word}{_written(value)}" for value in points[name].values]
         for name, word in _OTHER_COORDINATES.items()
         if name in points.coords and np.unique(points[name]).size > 1
     ]
     rows = zip(*columns, strict=True) if columns else [()] * points.sizes["operating_point"]
     return [", ".join(words) for words in rows]
+
+
+def _written(value):
+    """Return a name, or a number without superfluous zeros."""
+    return f"{value:g}" if isinstance(value, float) else value
 
 
 def rig_name(dataset: xr.Dataset) -> str:
@@ -288,7 +293,7 @@ def footnote(figure: Figure, *shown: xr.Dataset | xr.DataArray) -> None:
         values = [np.ravel(one[name]) for one in shown if name in one.coords]
         if values:
             different = np.unique(np.concatenate(values)).tolist()
-            parts.append(word + ", ".join(map(str, different)))
+            parts.append(word + ", ".join(map(_written, different)))
     # An empty line leaves room for the stamp.
     line = textwrap.fill(" · ".join(parts), _FOOTNOTE_LINE) + "\n"
     figure.supxlabel(line, x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")

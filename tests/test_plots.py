@@ -241,7 +241,7 @@ def test_a_footnote_names_all_that_several_datasets_hold():
     figure, _ = plt.subplots()
     one = xr.Dataset(coords={"lubricant": "squalane", "slide_to_roll_ratio": 0.1})
     plots.footnote(figure, one, one.assign_coords(slide_to_roll_ratio=[0.0, 0.1]))
-    assert figure.get_supxlabel().strip() == "squalane · slide-to-roll ratio 0.0, 0.1"
+    assert figure.get_supxlabel().strip() == "squalane · slide-to-roll ratio 0, 0.1"
 
 
 def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
@@ -251,7 +251,7 @@ def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
         axes.set_xlabel("Force (N)")
         if footnote:
             plots.footnote(figure, shown.assign_coords(slide_to_roll_ratio=[0.0, 0.1]))
-            assert figure.get_supxlabel().strip() == "slide-to-roll ratio 0.0, 0.1"
+            assert figure.get_supxlabel().strip() == "slide-to-roll ratio 0, 0.1"
         plots.save_figure(figure, tmp_path / "figure", shown)
         figure.canvas.draw()
         bottom = axes.xaxis.label.get_window_extent().y0
