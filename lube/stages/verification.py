@@ -1,5 +1,7 @@
 """The verification stage: the study's methods against theory, other methods and print."""
 
+import logging
+
 import numpy as np
 import xarray as xr
 
@@ -11,6 +13,8 @@ from lube.study.study import Study
 from lube.types import Datasets
 from lube.verification import films, lines, surfaces
 from lube.verification.check import CHECKS
+
+log = logging.getLogger(__name__)
 
 _TEXTS = "subject", "against", "kind", "unit", "source"
 
@@ -56,7 +60,12 @@ def _outcomes(deviations):
     table["check_deviation"] = "check", six_digits(seen)
     table["check_allowed"] = "check", allowed
     outcomes = np.where(seen <= allowed, "agrees", "differs")
-    table["check_outcome"] = "check", np.where(np.isnan(allowed), "not judged", outcomes)
+    outcomes = np.where(np.isnan(allowed), "not judged", outcomes)
+    table["check_outcome"] = "check", outcomes
+    for number in np.flatnonzero(outcomes == "differs"):
+        subject, against, _, most, unit, _ = rows.iloc[number]
+        words = number + 1, subject, against, seen[number], unit, most
+        log.warning("check %d: %s, and %s, differ by %.2g %s; up to %g passes", *words)
     return table
 
 

@@ -45,10 +45,12 @@ def test_all_checks_pass_on_a_fine_grid(found):
     assert found["check_subject"].values.tolist() == CHECKS["subject"].tolist()
 
 
-def test_a_grid_that_is_too_coarse_does_not_pass(few):
+def test_a_grid_that_is_too_coarse_does_not_pass(few, caplog):
     coarse = found_in(load_study(CONFIG / "smoke.yaml"))
     wrong = coarse["check_subject"].values[coarse["check_outcome"].values == "differs"]
-    assert "runs of touching points, sampled, lambda ratios 1 to 8" in wrong
+    runs = "runs of touching points, sampled, lambda ratios 1 to 8"
+    assert runs in wrong
+    assert f"check 2: {runs}, and rate of upward crossings, differ by" in caplog.text
     ratio = coarse["breakthrough_probability_ratio"].sel(grid="twice the points")
     assert (ratio > 1.5).all()
 
