@@ -34,7 +34,7 @@ SURFACE_SEEDS = 2
 FEWER_SURFACES = 16
 """Surfaces in each set are this many times fewer than elsewhere."""
 SIZES = {
-    "plain line": (512, 2),
+    "plain line": (1024, 2),
     "line": (1024, 2),
     "answered line": (256, 2),
     "surface": (32, 12),
