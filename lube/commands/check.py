@@ -89,21 +89,26 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
 
 def _taken_over_authors(path, study, changes):
     """Say whose names are those of the study that this one is based on."""
-    content = read_yaml(path, StudyError)
-    own = {*(content.get("about") or ()), *((changes or {}).get("about") or ())}
-    if "based_on" in content and "creators" not in own and study.about.creators:
+    base, own = _base_and_own(path, changes, "about")
+    if base and "creators" not in own and study.about.creators:
         names = "; ".join(one.name for one in study.about.creators)
-        yield f"about.creators: {content['based_on']} names {names}; put in your own"
+        yield f"about.creators: {base} names {names}; put in your own"
 
 
 def _taken_over_ranges(path, study, changes):
     """Say which ranges are those of the study that this one is based on."""
-    content = read_yaml(path, StudyError)
-    own = {*(content.get("uncertainty") or ()), *((changes or {}).get("uncertainty") or ())}
+    base, own = _base_and_own(path, changes, "uncertainty")
     names = [spoken(one.name) for one in study.uncertainty.factors() if one.name not in own]
-    if "based_on" in content and names:
+    if base and names:
         given = f"the ranges and choices of {', '.join(names)}"
-        yield f"uncertainty: {content['based_on']} gives {given}; replace those that are not yours"
+        yield f"uncertainty: {base} gives {given}; replace those that are not yours"
+
+
+def _base_and_own(path, changes, section):
+    """Return the study that a file is based on, if any, and its own keys of a section."""
+    content = read_yaml(path, StudyError)
+    own = {*(content.get(section) or ()), *((changes or {}).get(section) or ())}
+    return content.get("based_on"), own
 
 
 def _expected_run(study, points):

@@ -34,7 +34,6 @@ SURFACE_SEEDS = 2
 FEWER_SURFACES = 16
 """Surfaces in each set are this many times fewer than elsewhere."""
 SIZES = {
-    "plain line": (1024, 2),
     "line": (1024, 2),
     "answered line": (256, 2),
     "surface": (32, 12),
@@ -102,8 +101,6 @@ def is_sum(deviating: Deviating, model: Model) -> bool:
 def _sizes(deviating, model):
     if is_sum(deviating, model):
         return SIZES["sum"]
-    if model == PLAIN_LINE:
-        return SIZES["plain line"]
     is_answered_line = model.gap.is_answered and model.contact_model == "line"
     return SIZES["answered line" if is_answered_line else model.contact_model]
 

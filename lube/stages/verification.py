@@ -63,9 +63,11 @@ def _outcomes(deviations):
     outcomes = np.where(np.isnan(allowed), "not judged", outcomes)
     table["check_outcome"] = "check", outcomes
     for number in np.flatnonzero(outcomes == "differs"):
-        subject, against, _, most, unit, _ = rows.iloc[number]
-        words = number + 1, subject, against, seen[number], unit, most
-        log.warning("check %d: %s, and %s, differ by %.2g %s; up to %g passes", *words)
+        one = rows.iloc[number]
+        both, off = f"{one['subject']}, and {one['against']}", f"{seen[number]:.2g} {one['unit']}"
+        log.warning(
+            "check %d: %s, differ by %s; up to %g passes", number + 1, both, off, one["allowed"]
+        )
     return table
 
 
