@@ -83,6 +83,22 @@ def windows_in(dataset: xr.Dataset, width: Values, slower: Values = 1.0) -> Valu
     return independent_windows(travel, width, dataset.attrs["longest_wavelength"])
 
 
+def windows_at_records(records: xr.Dataset) -> Array:
+    """Count the independent contact windows in one realisation, at the film of each record.
+
+    Parameters
+    ----------
+    records : xarray.Dataset
+        With ``contact_half_width`` over record, and the attributes that `windows_in` needs.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (record,).
+    """
+    return windows_in(records, 2.0 * records["contact_half_width"].values)
+
+
 def gather(batches: Sequence[xr.Dataset], film: xr.Dataset) -> xr.Dataset:
     """Join batches of realisations, and add the interval of every probability.
 

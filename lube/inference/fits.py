@@ -10,10 +10,11 @@ import numpy as np
 import scipy
 import xarray as xr
 
+from lube.contact.ensemble import windows_at_records
 from lube.contact.surface_strip import SURFACES
 from lube.ehl.film_formulas import formula
 from lube.grid.films import FilmGroups
-from lube.inference.record_curves import RecordCurves, realised_shares
+from lube.inference.record_curves import PROBABILITY, RecordCurves, realised_shares
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
@@ -233,7 +234,7 @@ def fit_records(
     logits, count = logits + _pooled_shift(comparison), SURFACES
     covariance = _pair_scatter(comparison)
     if "realisation" in comparison.dims:
-        probabilities, size = realised_shares(comparison)
+        probabilities, trials = realised_shares(comparison)
         deviations = comparison["record_deviation"].values
         # Only the first realisations were run as records of several revolutions.
         deviations = deviations[np.isfinite(deviations).all(axis=1)]
@@ -243,6 +244,12 @@ def fit_records(
         covariance += of_mean / count
     if contact_model == "surface":
         size = comparison["sample_size"].values
+    else:
+        # Records weigh by their windows. The scatter between realisations is in their errors only:
+        # as weights, it would make fits from few realisations look too good.
+        size = windows_at_records(comparison)
+        scale = np.sqrt(size / trials)
+        covariance *= scale[:, None] * scale
     shares, noise = comparison["measured_share"].values, comparison["share_error"].values
     return fit_factor(log_factors, logits, shares, size, covariance, count, noise)
 
@@ -275,14 +282,14 @@ def _coverage(log_factors, truth, logits, comparison):
     where the misfit there is within its quantile.
     """
     logits, comparison = _usable(logits, comparison)
-    probabilities, size = realised_shares(comparison)
+    probabilities, windows = comparison[PROBABILITY].values, windows_at_records(comparison)
     count = len(probabilities)
-    if count < 3 or not size.size:
+    if count < 3 or not windows.size:
         return np.nan
     slopes = np.gradient(logits, log_factors, axis=0)
     nearest = int(np.argmin(np.abs(log_factors - truth)))
     model = scipy.special.expit(logits[nearest])
-    weight = size * slopes[nearest]
+    weight = windows * slopes[nearest]
     others = (count * model - probabilities) / (count - 1)
     misfit = np.sum(weight * (probabilities - others), axis=1)
     sums = np.sum(weight * probabilities, axis=1)

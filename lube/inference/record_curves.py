@@ -14,7 +14,7 @@ import scipy
 import xarray as xr
 from scipy.special import expit, logit
 
-from lube.contact.ensemble import windows_in
+from lube.contact.ensemble import windows_at_records, windows_in
 from lube.contact.rough_pair import drawn
 from lube.contact.surface_strip import SURFACES
 from lube.contact.windows import study_windows
@@ -282,8 +282,7 @@ def _own_curve(films, pairs, record, is_sampled):
 def realised_shares(comparison: xr.Dataset) -> Pair:
     """Probabilities of the realisations at records, and the effective sample size of one."""
     probabilities = comparison[PROBABILITY].values
-    windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
-    return probabilities, effective_sample_size(probabilities, windows)
+    return probabilities, effective_sample_size(probabilities, windows_at_records(comparison))
 
 
 def _through(films, mean, sample_size):

@@ -21,7 +21,7 @@ import pandas as pd
 import scipy
 import xarray as xr
 
-from lube.contact.ensemble import windows_in
+from lube.contact.ensemble import windows_at_records
 from lube.contact.surface_strip import SURFACES
 from lube.grid.operating_points import over_contact_models
 from lube.inference.at_records import model_at_records, study_films_at_records
@@ -123,7 +123,7 @@ def _table(model, experiment):
 def _of_lines(table):
     """Probability with its limits, and prediction interval, from the realisations of lines."""
     probabilities = table["breakthrough_probability"].values
-    windows = windows_in(table, 2.0 * table["contact_half_width"].values)
+    windows = windows_at_records(table)
     limits = probability_interval(probabilities, windows)
     size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
     names = "pooled_probability", "scatter_ratio", "pooled_error"
@@ -233,7 +233,7 @@ def _expected(table, contact_model):
     ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
     if contact_model == "line":
         measured = np.isfinite(table["measured_share"].values)
-        windows = windows_in(table, 2.0 * table["contact_half_width"].values)
+        windows = windows_at_records(table)
         by_formula = table["breakthrough_probability"].values.swapaxes(0, 1)
         scatter, pair = table["scatter_ratio"].values, table["pair"].to_series().factorize()[0]
         for row, (members, ratio) in enumerate(zip(by_formula, scatter, strict=True)):

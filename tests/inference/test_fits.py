@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from experiments import experiment_of
+from scipy.special import expit, logit
 
 from lube.inference.at_records import film_at_records
-from lube.inference.fits import _lambda_ratios
+from lube.inference.fits import _lambda_ratios, fit_records
 from lube.physics.starvation import starvation_factor
 from lube.study.oil_properties import lubricant_table
 
@@ -44,3 +45,26 @@ def test_the_load_that_asperities_carry_stays_that_of_the_studys_coefficient(stu
     found = _lambda_ratios(shared, factor).isel(factor=0)
     np.testing.assert_allclose(found, shared["lambda_ratio"], rtol=1e-4)
     assert (shared["lambda_ratio"] / alone["lambda_ratio"]).max() > 1.015
+
+
+def test_limits_from_four_realisations_hold_the_true_factor():
+    """Windows and records are independent, so that shares are binomial."""
+    generator, windows, trials = np.random.default_rng(0), 500, 300
+    truth, log_factors = np.linspace(-4.0, 1.0, 30), np.linspace(-1.0, 1.0, 201)
+    ones, lengths = np.ones(truth.size), {"travel": windows * 2e-4, "longest_wavelength": 1e-4}
+    records = {"scatter_ratio": ones, "pooled_error": ones, "share_error": 0.0 * ones}
+    records |= {"pair": 0.0 * ones, "contact_half_width": 0.5e-4 * ones}
+    held = 0
+    for _ in range(trials):
+        of_pairs = generator.binomial(windows, expit(truth), (5, truth.size)) / windows
+        own, drawn = of_pairs[0], of_pairs[1:]
+        mean = drawn.mean(axis=0)
+        shares = {"measured_share": own, "pooled_probability": mean, "simulated_probability": mean}
+        table = xr.Dataset({name: ("record", row) for name, row in (records | shares).items()})
+        for name, rows in ("breakthrough_probability", drawn), ("record_deviation", drawn - mean):
+            table[name] = ("realisation", "record"), rows
+        # The model's curve goes through the mean over the realisations.
+        logits = logit(mean) - 4.0 * log_factors[:, None]
+        _, lower, upper = fit_records(log_factors, logits, table.assign_attrs(lengths))
+        held += lower <= 1.0 <= upper
+    assert 0.93 <= held / trials <= 0.97
