@@ -335,11 +335,11 @@ def fit_factor(
     .. math:: S(f) = \sum_i n_i l_i (m_i - p_i), \qquad
               l_i = \frac{d\, \mathrm{logit}(p_i)}{d \ln f}
 
-    with the measured share :math:`m`, the model's probability :math:`p` and the effective sample
-    size :math:`n`. It is divided by its standard error, in which the records are correlated. The
-    estimate is where it is zero; the 95 % interval holds all factors at which it lies within its
-    quantile (a score interval), so records with a share of 0 or 1 count as well. The covariance
-    is never inverted: from R realisations its rank is R - 1 only.
+    with the measured share :math:`m`, the model's probability :math:`p` and the number :math:`n` of
+    trials by which a record weighs. It is divided by its standard error, in which the records are
+    correlated. The estimate is where it is zero; the 95 % interval holds all factors at which it
+    lies within its quantile (a score interval), so records with a share of 0 or 1 count as well.
+    The covariance is never inverted: from R realisations its rank is R - 1 only.
 
     Parameters
     ----------
@@ -351,7 +351,7 @@ def fit_factor(
     shares : numpy.ndarray
         Measured shares, shape (P,).
     sample_size : numpy.ndarray
-        Effective sample size of one realisation, shape (P,).
+        Numbers :math:`n`, shape (P,).
     covariance : numpy.ndarray
         Covariance of the errors m - p, each over (p (1 - p) / n)^(1/2), shape (P, P).
     realisations : int
