@@ -21,7 +21,7 @@ across the strip.
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -31,7 +31,7 @@ import xarray as xr
 from lube.contact.pair_scatter import RecurringContacts, pair_deviation, turn_ratio
 from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments
-from lube.contact.surface_answers import COARSEST, SurfaceAnswer
+from lube.contact.surface_answers import COARSEST, AnsweredStrip, SurfaceAnswer
 from lube.contact.waves import answers_at
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
@@ -223,22 +223,23 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
     for point in np.flatnonzero(wanted):
         expected[:, point] = strips[point].expected(spec, length, sharp[point])
     certain = expected[0] > MANY
-    counts = np.where(expected[0] > SEVERAL, STRIPS // 2, STRIPS)
+    most = np.where(expected[0] > SEVERAL, STRIPS // 2, STRIPS)
     found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
 
-    def sample(surface, some, counts):
+    def sample(surface, some, is_certain):
         own = [changed[point] for point in some]
-        sampled = _sampled(pair, surface, own, counts, sharp[some], seeds, threads)
+        counts = np.where(is_certain, FEWER_STRIPS, most[some])
+        sampled = _sampled(pair, surface, own, counts, is_certain, sharp[some], seeds, threads)
         for name, values in sampled.items():
             found[name][some] = values
 
     for surface, alike in _on_alike_grids(spec, strips):
         some = alike[wanted[alike]]
         if some.size:
-            sample(surface, some, np.where(certain, FEWER_STRIPS, counts)[some])
-        holds = certain[some] & (found["breakthrough_probability"][some] < CERTAIN)
-        if holds.any():  # few strips do not tell how often the layer breaks
-            sample(surface, some[holds], counts[some[holds]])
+            sample(surface, some, certain[some])
+        holds = some[certain[some] & (found["breakthrough_probability"][some] < CERTAIN)]
+        if holds.size:  # few strips do not tell how often the layer breaks
+            sample(surface, holds, np.zeros(holds.size, bool))
     perimeters = np.multiply(spec.points, spec.spacing)
     found["pair_deviation"] = np.full(len(strips), np.nan)
     recurring = RecurringContacts(spec) if perimeters[0] != perimeters[1] else None
@@ -294,11 +295,31 @@ def smallest_contacts(spec: LineSpecLike, strips: Sequence[StripFilm]) -> Array:
     return 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
 
 
-def _sampled(pair, surface, strips, counts, sharp, seeds, threads):
-    """Probabilities and numbers of contacts, with their intervals, shape (strips,) each.
+@dataclass(frozen=True)
+class _SampledStrip:
+    """How an operating point is sampled on each surface.
 
-    Of each strip `counts` are sampled on a surface: `FEWER_STRIPS` where contact is certain.
+    Attributes
+    ----------
+    film, sharp : numpy.ndarray
+        Film and breaking curvature at the columns of the strip, height steps.
+    count : int
+        Number of strips.
+    is_certain : bool
+        Whether contact is certain, so that contacts are counted in some strips.
+    answered : AnsweredStrip or None
+        What the oil adds to the surfaces.
     """
+
+    film: Array
+    sharp: Array
+    count: int
+    is_certain: bool
+    answered: AnsweredStrip | None
+
+
+def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
+    """Probabilities and numbers of contacts, with their intervals, shape (strips,) each."""
     down, along = surface.spacing
     reach, step = _reach(pair.spec, down), pair.spec.height_step
     rows = sum(reach), reach[1]
@@ -310,7 +331,8 @@ def _sampled(pair, surface, strips, counts, sharp, seeds, threads):
     answered = [strip.answered(surface, *rows) for strip in strips]
     with one_blas_thread():
         answered = [oil and oil.with_covariances(threads) for oil in answered]
-    strips = list(zip(films, limits, counts.tolist(), answered, strict=True))
+    each = zip(films, limits, counts.tolist(), is_certain.tolist(), answered, strict=True)
+    strips = [_SampledStrip(*one) for one in each]
     covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
 
     def on_one_surface(of_one):
@@ -351,13 +373,14 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
     drawing, choosing = map(np.random.default_rng, seeds)
     *fields, waves = surface.draw(drawing)
     fields, chosen, both = tuple(fields), choosing.random((4, STRIPS)), []
-    if any(one and len(one.answers) > 1 for *_, one in strips):
+    if any(one.answered and len(one.answered.answers) > 1 for one in strips):
         both = surface.of_each(waves, drawing)
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points[1], BLOCK), axis=1)
     tops = tops, np.maximum.reduceat(tops, np.arange(0, surface.points[0], GROUP))
     longest, around = reach
     first, numbers = [], []
-    for film, sharp, count, answer in strips:
+    for strip in strips:
+        film, count, answer = strip.film, strip.count, strip.answered
         rms, shift, by_oil = surface.rms, 0, NO_ANSWER
         if answer:
             rms, shift = rms * answer.rms, answer.shift
@@ -380,14 +403,14 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
         # Strips begin at nodes.
         places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))
         *each, contacts = touching_strips(
-            *(fields, tops, covariances, places, touching, film, sharp, fading, around, by_oil),
-            surface.diagonal,
+            *(fields, tops, covariances, places, touching, film, strip.sharp, fading, around),
+            *(by_oil, surface.diagonal),
         )
         first.append(weight * np.stack(each))
-        if count == FEWER_STRIPS:
+        if strip.is_certain:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
             contacts = contacts_per_row(
-                fields, covariances, some, film, sharp, around, by_oil, surface.diagonal
+                fields, covariances, some, film, strip.sharp, around, by_oil, surface.diagonal
             )
         else:
             contacts = weight * contacts

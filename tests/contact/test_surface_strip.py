@@ -148,7 +148,7 @@ def compare(spec, surfaces, surface, film, count):
     rng = np.random.default_rng(8)
     counted = np.array([searched(surfaces, surface, films, sharp, rng) for _ in range(count)])
     pair = RoughPair(spec, (ROWS + 0.5) * surface.spacing[0], layer=None, seed=SEED)
-    strips = [film], np.array([surface_strip.STRIPS])
+    strips = [film], np.array([surface_strip.STRIPS]), np.array([False])
     seeds = surface_strip.surface_seeds(SEED, surface_strip.SURFACES)
     found = surface_strip._sampled(pair, surface, *strips, [curvature], seeds, threads=1)
     names = ["geometric_contact_probability", "breakthrough_probability"]
