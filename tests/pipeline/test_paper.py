@@ -22,6 +22,17 @@ def test_its_head_is_that_of_the_journal():
     assert (ROOT / "docs/paper" / head["bibliography"]).is_file()
 
 
+def test_it_has_the_sections_and_the_length_that_the_journal_asks_for():
+    """By its page "JOSS Paper Format" of 2026."""
+    sections = (
+        "Summary, Statement of need, State of the field, Software design, "
+        "Research impact statement, AI usage disclosure, References"
+    ).split(", ")
+    found = re.findall(r"^# (.+)$", PAPER, flags=re.MULTILINE)
+    assert [name for name in found if name in sections] == sections
+    assert 750 <= len(PAPER.split()) <= 1750
+
+
 def test_its_figures_are_drawn_by_notebooks_and_referred_to():
     for label, path in re.findall(r"label\{(fig:\w+)\}\]\((\S+)\)", PAPER):
         assert rf"\autoref{{{label}}}" in PAPER
