@@ -47,7 +47,7 @@ CORRECTIONS = [
     ("inlet_shear_heating", "gupta", "'zhu-cheng-1988'"),
     ("contact_model", ["volume"], "got 'volume', need 'line' or 'surface'"),
     ("contact_model", ["line", "line"], "got line repeatedly, need it once"),
-    ("contact_model", "surface", "got 'surface', need a list"),
+    ("contact_model", "surface", "got 'surface', need a list such as [surface]"),
 ]
 
 COUNTS = [
