@@ -313,11 +313,12 @@ def plain_log_ticks(axis: Axis, numbers: Sequence[int] = (1, 2, 5)) -> None:
     """
     low, high = sorted(axis.get_view_interval())
     axis.set_major_locator(LogLocator(subs=numbers))
-    shown = [f"{tick:g}" for tick in axis.get_majorticklocs() if low <= tick <= high]
-    panel, inches = axis.axes, _CHARACTER * (len("".join(shown)) + len(shown))
+    shown = [tick for tick in axis.get_majorticklocs() if low <= tick <= high]
+    panel, inches = axis.axes, _CHARACTER * sum(len(f"{tick:g} ") for tick in shown)
     width = panel.get_window_extent().width / panel.figure.dpi
     if len(shown) > _MOST_LABELS or (axis.axis_name == "x" and inches > width):
         axis.set_major_locator(LogLocator())
+        shown = [tick for tick in axis.get_majorticklocs() if low <= tick <= high]
     if len(shown) < 2:
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.set_minor_locator(NullLocator())
@@ -558,16 +559,21 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
 
 def _fold_labels(figure):
     """Break titles and axis labels that are longer than their panels into several lines."""
-    # Folded labels leave the panels less room, so the others are measured again.
+    # Folded labels leave the panels less room, so all are measured again. A label that is still too
+    # long is folded anew from its own lines: folding its parts would leave single words.
     engine = figure.get_layout_engine()
+    whole: dict[plt.Text, str] = {}
     for _ in range(3):
         if engine is not None:
             engine.execute(figure)
         long = [one for axes in figure.axes for one in _long_labels(axes)]
         for text, excess in long:
-            text.set_text(_folded(text.get_text(), excess))
+            label = whole.setdefault(text, text.get_text())
+            text.set_text(_folded(label, max(map(len, text.get_text().splitlines())) / excess))
         if not long:
             return
+    if engine is not None:
+        engine.execute(figure)
 
 
 def _long_labels(axes):
@@ -580,11 +586,11 @@ def _long_labels(axes):
             yield text, excess
 
 
-def _folded(label, excess):
-    """Fold a label whose longest line is too long by a factor; numbers keep their units."""
+def _folded(label, width):
+    """Fold a label into lines of as many characters; numbers keep their units."""
     lines = _SPACE_BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", label).splitlines()
     # One character less, because not all are equally wide.
-    width = max(int(max(map(len, lines)) / excess) - 1, 1)
+    width = max(int(width) - 1, 1)
     folded = "\n".join(textwrap.fill(line, width) for line in lines)
     return folded.replace("\N{NO-BREAK SPACE}", " ")
 

@@ -279,6 +279,23 @@ def test_a_long_label_is_folded_to_its_panel_and_keeps_numbers_with_their_units(
     assert title.get_window_extent().width <= axes.get_window_extent().width
 
 
+def test_a_label_folded_twice_is_folded_from_its_own_lines(study):
+    plots.use_style()
+    canvas, panels = plt.subplots(1, 3, figsize=(7.2, 2.8))
+    for panel, label in zip(
+        panels, ("Bandwidth (Hz)", "Contact share below 100 Ω", ""), strict=True
+    ):
+        panel.set_xlabel(label)
+        panel.set_ylabel("Simulated rig's share /\ntrue share")
+    panels[0].set_title("(a) 800 N, 200 r/min, 90 °C", loc="left")
+    record = "(c) run1.csv (recs.csv: line 3), pair A\n400 N, 200 r/min, 90.3 °C"
+    panels[2].set_title(record, loc="left")
+    plots.save_figure(canvas, None, xr.Dataset(attrs=global_attributes(study, "film")))
+    words = panels[2].get_title(loc="left")
+    assert "(recs.csv: line 3)," in words.splitlines()
+    assert words.replace("\n", " ") == record.replace("\n", " ")
+
+
 def test_the_legend_names_each_label_once_and_fits_the_figure():
     plots.use_style()
     canvas, panels = plt.subplots(1, 2, figsize=(4, 2))
@@ -299,3 +316,13 @@ def test_a_logarithmic_axis_of_few_decades_has_plain_numbers():
         labels = [text.get_text() for text in axes.get_xticklabels() if text.get_text()]
         assert ticks is None or set(ticks) <= set(labels)
         assert ticks is not None or all("10^" in label for label in labels)
+
+
+@pytest.mark.parametrize("limits", [(0.145, 0.48), (0.29, 0.46), (0.6, 4.0)])
+def test_a_logarithmic_axis_within_a_decade_has_labels(limits):
+    plots.use_style()
+    _, panels = plt.subplots(1, 3, figsize=(7.2, 3.2))
+    panels[1].set(xscale="log", xlim=limits)
+    plots.log_ticks(panels[1].xaxis)
+    low, high = limits
+    assert sum(low <= tick <= high for tick in panels[1].xaxis.get_majorticklocs()) >= 2

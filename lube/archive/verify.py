@@ -55,8 +55,11 @@ def unpacked(path: File) -> Iterator[Path]:
                 shutil.unpack_archive(path, scratch, "zip")
             except (OSError, zipfile.BadZipFile, zlib.error) as error:
                 raise DataError(f"{path}: neither a folder nor a complete zip ({error})") from None
-        # A zip may have been packed with the archive's folder or without it.
-        roots = sorted(folder.rglob(SUMS), key=lambda sums: len(sums.parts))
+        # A zip may have been packed with folders around the archive's. The archive deep in a folder
+        # of results is only a copy of what was asked about.
+        below = [SUMS, f"*/{SUMS}"] if folder == path else [f"**/{SUMS}"]
+        found = [sums for pattern in below for sums in folder.glob(pattern)]
+        roots = sorted(found, key=lambda sums: len(sums.parts))
         if not roots:
             raise DataError(f"{path}: not an archive: {SUMS} is missing")
         yield roots[0].parent

@@ -132,7 +132,7 @@ class Rollers:
         roll_off_wavelength: str | None = None,
         skewness: float = 0.0,
         kurtosis: float = 3.0,
-        lay_ratio: float = 1.0,
+        lay_ratio: float | None = None,
         lay_angle: str | None = None,
         points: int | None = None,
         critical_thickness: str = "5 nm",
@@ -170,6 +170,8 @@ class Rollers:
             self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
         # Lengths only: a study's other choices depend on its grid.
         waves |= {name: _metres(name, given[name]) for name in _LENGTHS}
+        if lay_ratio is None:  # not stated
+            del waves["lay_ratio"]
         if points is None:
             shortest = parse_quantity(waves["shortest_wavelength"], "m")
             points = rollers.grid_points(self.pair.first.radius, shortest)

@@ -244,7 +244,11 @@ def _entry(content, where, folder, earlier):
     if earlier and row.origin != earlier[0].origin:
         came = f"got {row.origin!r} after {earlier[0].origin!r}"
         raise DataError(f"{where}: origin: {came}, need the same in all rows")
-    return Entry.model_construct(**dict(row) | {"where": where, "file": file})
+    entry = Entry.model_construct(**dict(row) | {"where": where, "file": file})
+    for other in earlier:
+        if file is not None and dict(other) | {"where": where} == dict(entry):
+            raise DataError(f"{where}: repeats {other.where}, need each record once")
+    return entry
 
 
 def _with_point(value):

@@ -368,6 +368,8 @@ def _in_one_line(mistake, model):
         return f"{key}{'.' if names_key and key else ': '}{error}".removeprefix(": ")
     needed = mistake["msg"].replace("Input should be", "need")
     needed = _NEEDED.get(kind, needed).format(**mistake.get("ctx", {}))
+    if kind == "tuple_type" and isinstance(mistake["input"], str):
+        needed = needed.replace("a, b", mistake["input"])
     return f"{key}: got {shown(mistake['input'])}, {needed}"
 
 

@@ -129,6 +129,11 @@ def _key(roller, own, name):
 def _lay(own, key):
     """Lay of a roller's surface, nothing if it has none."""
     if own.lay_ratio == 1.0:
+        if own.lay_angle is not None and "lay_ratio" not in own.model_fields_set:
+            raise StudyError(
+                f"{key('lay_angle')}: got {own.lay_angle:g} deg without a lay_ratio, need how many "
+                "times longer than wide the ridges are, or 1 for none"
+            )
         return {}
     if own.lay_angle is None:
         raise StudyError(

@@ -293,7 +293,8 @@ def lay_of_map(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]
     options = {"initial_simplex": steps, "xatol": 1e-3, "fatol": 1e-9}
     found = scipy.optimize.minimize(misfit, begin, method="Nelder-Mead", options=options).x
     angle = (found[1] + 90.0) % 180.0 - 90.0  # ridges at 100 degrees are at -80
-    return float(f"{math.exp(abs(found[0])):.3g}"), round(float(angle), 1)
+    # A rounded angle just below 0 is no "-0" in messages.
+    return float(f"{math.exp(abs(found[0])):.3g}"), round(float(angle), 1) + 0.0
 
 
 def _map_bins(surface, q_max, texture):

@@ -232,14 +232,17 @@ def remove_form(heights: Array, form: str) -> Array:
     measured = np.isfinite(columns)
     terms = [(a, b) for a in range(orders[0] + 1) for b in range(orders[1] + 1) if a + b <= order]
     first, second = np.array(terms).T
-    right = (along.T @ np.where(measured, columns, 0.0) @ across)[first, second]
+    # By einsum, as sums of BLAS have other last bits with another number of threads.
+    sums = np.einsum("xa,xy->ay", along, np.where(measured, columns, 0.0))
+    right = np.einsum("ay,yb->ab", sums, across)[first, second]
     # Sums over the measured points of the products of any two terms.
     of_rows, of_columns = (each[:, :, None] * each[:, None, :] for each in (along, across))
-    normal = np.einsum("iab,icd->abcd", of_rows, np.tensordot(measured, of_columns, 1))
+    normal = np.einsum("iab,icd->abcd", of_rows, np.einsum("xy,ycd->xcd", measured, of_columns))
     matrix = normal[first[:, None], first[None, :], second[:, None], second[None, :]]
     coefficients = np.zeros((orders[0] + 1, orders[1] + 1))
     coefficients[first, second] = np.linalg.lstsq(matrix, right, rcond=None)[0]
-    return (columns - along @ coefficients @ across.T).reshape(heights.shape)
+    fitted = np.einsum("xa,ya->xy", along, np.einsum("ab,yb->ya", coefficients, across))
+    return (columns - fitted).reshape(heights.shape)
 
 
 def step_at_join(heights: Array) -> float:

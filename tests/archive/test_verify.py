@@ -64,6 +64,17 @@ def test_damaged_sums_are_found(changed):
         pass
 
 
+def test_the_results_that_an_archive_lies_in_are_not_taken_for_it(tmp_path):
+    inside = tmp_path / "archive" / "mine"
+    inside.mkdir(parents=True)
+    (inside / SUMS).touch()
+    for folder in (inside, inside.parent):
+        with unpacked(folder) as found:
+            assert found == inside
+    with pytest.raises(DataError, match="not an archive"), unpacked(tmp_path):
+        pass
+
+
 # Contents
 
 

@@ -147,6 +147,10 @@ def test_they_show_themselves_and_travel_between_processes():
             lambda: lube.trace(None, None, bands=True),
             "trace: bands: unknown argument, only contact_probability, duty and the required_",
         ),
+        (
+            lambda: Rollers("50 mm", "0.2 um", lay_angle="0 deg"),
+            "roughness.lay_angle: got 0 deg without a lay_ratio, need how many times longer",
+        ),
         (lambda: Rollers(rms_roughness="1 um"), "Rollers: missing a required argument: 'radius'"),
     ],
 )

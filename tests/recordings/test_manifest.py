@@ -95,6 +95,15 @@ def test_several_rows_may_have_one_operating_point(folder):
     assert [entry.pair for entry in found.entries] == ["A", "A", "B"]
 
 
+def test_a_row_that_repeats_another_is_refused(folder):
+    header = "file,channel,force [N],speed [rpm],temperature [degC]"
+    rows = ["a.csv,,800,100,40", "a.csv,,800,100,50", "a.csv,U,800,100,40", "a.csv,,800,100,40"]
+    found = manifest(folder, header, *rows)
+    assert len(found.entries) == 3
+    repeated = "manifest.csv: line 5: repeats manifest.csv: line 2, need each record once"
+    assert found.refused == (repeated,)
+
+
 def test_the_first_usable_row_decides_the_origin(folder):
     rows = [",7,,,0.8,100,40,simulated", ",0.5,,,0.8,100,50,measured", ",0.5,,,0.8,100,60,"]
     found = manifest(folder, HEADER, *rows)

@@ -47,7 +47,7 @@ CORRECTIONS = [
     ("inlet_shear_heating", "gupta", "'zhu-cheng-1988'"),
     ("contact_model", ["volume"], "got 'volume', need 'line' or 'surface'"),
     ("contact_model", ["line", "line"], "got line repeatedly, need it once"),
-    ("contact_model", "surface", "got 'surface', need a list"),
+    ("contact_model", "surface", "got 'surface', need a list such as [surface]"),
 ]
 
 COUNTS = [
@@ -191,6 +191,7 @@ def test_lays_that_a_line_cannot_take_are_refused(paper_with):
     angle = "roughness.lay_angle"
     for *changes, message in [
         (ridges, "roughness.lay_angle: missing, need it with a lay_ratio of 5: 0 deg for ridges"),
+        ((angle, "90 deg"), "roughness.lay_angle: got 90 deg without a lay_ratio, need how many"),
         (ridges, (angle, "0 deg"), "got ridges 5 times longer than wide at 0 deg to rolling, need"),
         (ridges, (angle, "120 deg"), "got 120 deg, need a value at least -90 and at most 90 deg"),
         (("roughness.lay_ratio", 0.5), "roughness.lay_ratio: got 0.5, need a value at least 1"),
@@ -207,7 +208,8 @@ def test_lays_that_a_line_cannot_take_are_refused(paper_with):
         assert message in refusal(paper_with(*changes)), message
     load_study(paper_with(ridges, (angle, "0 deg"), surface))
     load_study(paper_with(ridges, (angle, "45 deg")))
-    load_study(paper_with(("roughness.lay_ratio", 1.4), (angle, "0 deg")))
+    for ratio in (1, 1.4):
+        load_study(paper_with(("roughness.lay_ratio", ratio), (angle, "0 deg")))
 
 
 def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_with):

@@ -265,6 +265,11 @@ def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
             assert abs((found.lay_angle - angle + 90.0) % 180.0 - 90.0) < 1.0
 
 
+def test_ridges_along_rolling_are_not_at_minus_zero_degrees():
+    surface, _ = stretched_map(5.0, 0.0, seed=5)
+    assert str(spectrum_of(surface, LAY).lay_angle) == "0.0"
+
+
 @pytest.mark.parametrize("settings", [LAY, replace(LAY, long_cutoff=3e-4)])
 def test_the_spectrum_of_ridges_is_that_of_the_surface_that_is_stretched(settings):
     ratios = []

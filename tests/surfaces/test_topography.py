@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 from lube.errors import DataError
 from lube.surfaces.topography import (
@@ -41,6 +42,15 @@ def test_form_of_a_profile_is_that_of_polyfit():
     for order, form in enumerate(("none", "tilt", "curvature")):
         expected = z - np.polyval(np.polyfit(x, z, order), x)
         np.testing.assert_allclose(remove_form(z, form), expected, atol=1e-10)
+
+
+@pytest.mark.parametrize("form", ["tilt", "curvature"])
+def test_form_has_the_same_bits_with_any_number_of_threads(form):
+    heights = np.random.default_rng(2).normal(size=(700, 600))
+    with threadpool_limits(1):
+        alone = remove_form(heights, form)
+    with threadpool_limits(2):
+        np.testing.assert_array_equal(remove_form(heights, form), alone)
 
 
 @pytest.mark.parametrize("cutoff", [50.0, 100.0])
