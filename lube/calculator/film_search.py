@@ -9,7 +9,7 @@ from lube.calculator.arguments import bare_number, check_realisations
 from lube.calculator.bands import Assumptions
 from lube.calculator.film import conditions_of
 from lube.contact.strip_film import surface_moments
-from lube.contact.surface_strip import surface_contact
+from lube.contact.surface_strip import strip_films, surface_contact
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError, shown
 from lube.grid.gap import PLAIN
@@ -27,6 +27,12 @@ NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
 """Lambda ratios of the second look, over the one at which the first look finds the share."""
 AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
 """The same if the film has a shape or the oil changes the lines, which the first look ignores."""
+EXPECTED = np.exp([-0.3, 0.1])
+"""The same for surfaces, at two films whose contacts theory expects: each takes many seconds."""
+CLOSE = np.exp(np.linspace(-0.25, 0.15, 5))
+"""Lambda ratios at which these surfaces are sampled, over the one at which theory has the share."""
+FARTHER = np.exp(np.linspace(0.1, 0.4, 4))
+"""How many times thicker, or thinner, the next films are if those do not enclose the share."""
 BROAD = np.exp(np.linspace(-1.0, 1.0, 11))
 """The same for the limits over what is not known exactly."""
 FALLING = 0.3
@@ -141,8 +147,7 @@ class FilmSearch:
         """
         self._rollers.lines.check_width(2.0 * half_width, "force: the contact")
         look = self._at_surfaces if self._on_surface else self._at_lines
-        table, limits = look(half_width, table_at, ends, own)
-        ratios = table["film_thickness"].values / self._sigma
+        ratios, limits = look(half_width, table_at, ends, own)
         known = np.isfinite(limits[0])
         check_known(known.any())
         ratios, limits = ratios[known], [each[known] for each in limits]
@@ -197,7 +202,8 @@ class FilmSearch:
         table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
         looked_at = self._windows(table, own, self._gap)
-        return table, self._counted(looked_at) if is_seen else self._sampled(looked_at, PAIRS)
+        limits = self._counted(looked_at) if is_seen else self._sampled(looked_at, PAIRS)
+        return self._ratios(table), limits
 
     def _at_surfaces(self, half_width, table_at, ends, own):
         """Films near the one sought, and the probability on surfaces there, with its limits."""
@@ -206,17 +212,48 @@ class FilmSearch:
         ratios = LAMBDA_RATIOS[LAMBDA_RATIOS > 1.0]
         films, moments = ratios * self._sigma, surface_moments(pair.spec)
         contacts = expected_contacts(films, moments, pair.length, 2.0 * half_width)
-        found = _crossing(ratios, -np.expm1(-contacts), self._share)
-        around, is_plain = max(found, ratios[0]) * AROUND, self._gap.is_plain
+        found = max(_crossing(ratios, -np.expm1(-contacts), self._share), ratios[0])
+
+        def sampled(table):
+            contact = surface_contact(pair, table, weaker=self._weaker(table, own))
+            limits = [contact[f"breakthrough_probability{end}"].values for end in LIMITS]
+            return self._ratios(table), np.stack(limits)
+
+        if not self._gap.is_plain:
+            found = self._expected(pair, table_at, ends, found)
+            return self._enclosing(lambda ratios: sampled(table_at(ratios)), ends, found)
         while True:
-            ratios = around if is_plain else np.unique(np.clip(around, *ends))
-            table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
-            found = surface_contact(pair, table, weaker=self._weaker(table, own))
-            limits = [found[f"breakthrough_probability{end}"].values for end in LIMITS]
-            is_seen = (limits[0] >= self._share).any()
-            if is_seen or ratios[0] < LAMBDA_RATIOS[0] or ratios[0] in ends:
-                return table, limits
-            around = around * AROUND[0]  # the layer of most contacts holds
+            ratios, limits = sampled(self._flat(found * AROUND, half_width))
+            if (limits[0] >= self._share).any() or ratios[0] < LAMBDA_RATIOS[0]:
+                return ratios, limits
+            found = found * AROUND[0]  # the layer of most contacts holds
+
+    def _expected(self, pair, table_at, ends, found):
+        """Find the lambda ratio at which theory expects the share, from two films."""
+        table = table_at(np.clip(found * EXPECTED, *ends))
+        strips, ratios = strip_films(pair, table), self._ratios(table)
+        if None in strips or ratios[0] == ratios[1]:
+            return found
+        numbers = [strip.contacts(pair.spec, pair.length).number for strip in strips]
+        # The logarithm of the number is nearly linear in the square of the ratio.
+        wanted, logs, squares = np.log(-np.log1p(-self._share)), np.log(numbers), ratios**2
+        square = squares[0] + (wanted - logs[0]) * np.diff(squares).item() / np.diff(logs).item()
+        return np.sqrt(np.clip(square, *(found * AROUND[[0, -1]]) ** 2))
+
+    def _enclosing(self, sampled, ends, found):
+        """Sample surfaces at more and more films, until the limits enclose the share."""
+        ends, tried, parts = np.clip(ends, *LAMBDA_RATIOS[[0, -1]]), [], []
+        more = np.unique(np.clip(found * CLOSE, *ends))
+        while more.size:
+            tried, parts = [*tried, *more], [*parts, sampled(more)]
+            ratios, limits = (np.concatenate(each, axis=-1) for each in zip(*parts, strict=True))
+            if np.isnan(parts[-1][1]).all():
+                break  # no film is known beyond those that did not converge
+            found = [(limits[1] > self._share).any(), (limits[2] < self._share).any()]
+            more = np.stack([min(tried) / FARTHER, max(tried) * FARTHER])[~np.array(found)]
+            more = np.setdiff1d(np.clip(more, *ends), tried)
+        order = np.argsort(ratios)
+        return ratios[order], limits[:, order]
 
     def _crossing(self, ratios, probabilities):
         """Greatest lambda ratio at which a probability equals the share.
@@ -237,6 +274,10 @@ class FilmSearch:
         # Beside a probability of 0 or 1, from which no curve follows.
         peak = np.argmax(probabilities)
         return ratios[peak:][probabilities[peak:] < self._share].min(initial=np.inf)
+
+    def _ratios(self, table):
+        """Lambda ratios of films."""
+        return table["film_thickness"].values / self._sigma
 
     def _flat(self, ratios, half_width):
         films = {"film_thickness": ("film", ratios * self._sigma), "contact_half_width": half_width}

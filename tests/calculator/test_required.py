@@ -210,7 +210,7 @@ def assert_has_the_share(found, share):
     "more",
     [
         {},
-        pytest.param({"film_shape": "computed"}, marks=pytest.mark.slow),
+        {"film_shape": "computed"},
         pytest.param(lube.COMPLETE, marks=pytest.mark.slow),
     ],
     ids=["flat", "shaped", "complete"],
@@ -223,6 +223,19 @@ def test_a_share_on_the_surface_needs_more_speed_than_on_the_line(rollers, oil, 
         assert_has_the_share(lube.contact_probability(rollers, oil, **point, **choices), 0.2)
     line = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **ONE)
     assert found["speed_lower"] > 1.3 * line["speed"]
+
+
+@pytest.mark.parametrize("off", [0.5, 2.0])
+def test_on_the_surface_films_are_searched_until_their_limits_enclose_the_share(
+    rollers, oil, monkeypatch, off
+):
+    choices = SURFACE | {"film_shape": "computed"}
+    with on_few_surfaces(10):
+        usual = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **choices)
+        monkeypatch.setattr(film_search, "CLOSE", off * film_search.CLOSE)
+        found = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **choices)
+    assert found["speed"] == pytest.approx(usual["speed"].item(), rel=0.01)
+    assert found["speed_lower"] < usual["speed"] < found["speed_upper"]
 
 
 def test_on_the_surface_the_roughness_has_the_share(rollers, oil, busy):
