@@ -60,6 +60,19 @@ def test_the_film_is_that_of_the_load_that_the_asperities_leave(films, shape, st
         assert found != pytest.approx(whole["film_thickness"].sel(here).item(), rel=1e-3)
 
 
+@pytest.mark.parametrize("formula", ["moes", "computed"])
+def test_the_balance_is_found_where_asperities_carry_most_of_the_load(formula, study, spec):
+    """With little load left rollers hardly deform, and the film is another power of the load."""
+    oil = lubricant_table(study.lubricants, [80.0])
+    conditions = oil, study.rollers, [100.0], [10.0, 15.0, 25.0], [formula]
+    shared = film_table(*conditions, rough_surfaces=spec, load_sharing="iterated").squeeze()
+    share, films = shared["surface_load_share"].values, shared["film_thickness"].values
+    assert share[0] > 0.8 > share[-1] > 0.6
+    for speed, part, film in zip(conditions[3], share, films, strict=True):
+        alone = film_table(oil, study.rollers, [100.0 * (1.0 - part)], [speed], [formula])
+        assert film == pytest.approx(alone["film_thickness"].item(), rel=2e-3)
+
+
 def test_without_asperities_that_touch_nothing_changes(films):
     thick = {"film_formula": "paper", "temperature": 40.0, "force": 200.0}
     whole, shared = (films[0, way].sel(thick) for way in ("none", "iterated"))
