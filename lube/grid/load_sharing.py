@@ -74,7 +74,7 @@ def share_load(
     -------
     films, share : xarray.DataArray
         Film thickness, m, and the share of the load that asperities carry under it. Above `MOST`
-        no balance was found.
+        no balance was found; both are NaN where a film on the way is not known.
 
     Notes
     -----
@@ -91,7 +91,7 @@ def share_load(
             tried = 0.5 * (low + high)
             is_low = share_under(films * ((1.0 - tried) / (1.0 - share)) ** -power) > tried
             low, high = low.where(~is_low, tried), high.where(is_low, tried)
-        return low.where(whole.notnull()).clip(1e-6)
+        return low.where(films.notnull() & power.notnull()).clip(1e-6)
 
     films, share, power = whole, xr.zeros_like(whole), xr.zeros_like(whole)
     other = share_under(whole).clip(1e-6, 0.5)
