@@ -355,15 +355,16 @@ def one_blas_thread() -> AbstractContextManager:
 _libraries = cache(ThreadpoolController)
 
 
-def profiles_of(*groups: Values, meniscus: float | None = None) -> Array:
+def profiles_of(*groups: Values, meniscus: Values | None = None) -> Array:
     """Solve for the films of many contacts.
 
     Parameters
     ----------
     *groups : float or numpy.ndarray
         The arguments of `LineContact`; they broadcast.
-    meniscus : float, optional
-        Distance over R*, from the line of centres, at which the oil begins; by default far away.
+    meniscus : float or numpy.ndarray, optional
+        Distance over R*, from the line of centres, at which the oil begins; it broadcasts with the
+        groups. By default it is far away.
 
     Returns
     -------
@@ -372,7 +373,7 @@ def profiles_of(*groups: Values, meniscus: float | None = None) -> Array:
         converge, which is logged.
     """
 
-    def solved(*numbers):
+    def solved(*numbers, meniscus):
         if np.isnan(numbers).any():
             return None
         contact = LineContact(*map(float, numbers))
@@ -382,7 +383,7 @@ def profiles_of(*groups: Values, meniscus: float | None = None) -> Array:
             log.warning("%s", error)
             return None
 
-    return np.vectorize(solved, otypes=[object])(*groups)
+    return np.vectorize(solved, otypes=[object])(*groups, meniscus=meniscus)
 
 
 def _settle(contact, nodes, pressure, film, steps, is_damped=True):

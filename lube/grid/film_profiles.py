@@ -31,8 +31,8 @@ def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GR
     -------
     numpy.ndarray
         Positions over the half-width, rising and symmetric about 0: evenly spaced near the contact,
-        farther and farther apart outside. At the last one, the gap of the narrowest contact is
-        higher than any roughness.
+        farther and farther apart outside. At the last one, the gap of every contact is higher than
+        any roughness.
 
     Examples
     --------
@@ -41,9 +41,9 @@ def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GR
     >>> positions.size, float(positions[-1])
     (425, 9.375603)
     """
-    names = "contact_half_width", "reduced_radius", "composite_rms_roughness"
-    half_width, reduced_radius, roughness = (contact[name].min().item() for name in names)
-    farthest = 1.0 + np.sqrt(2.0 * reduced_radius * _REACH * roughness) / half_width
+    # The gap is at least (X - 1)^2 a^2 / 2 R*; duty points may differ in radius and in width.
+    scale = contact["contact_half_width"] ** 2 / (2.0 * contact["reduced_radius"])
+    farthest = 1.0 + np.sqrt(_REACH * (contact["composite_rms_roughness"] / scale).max().item())
     even = np.arange(0.0, _EVEN + step / 2, step)
     count = max(1, int(np.ceil(np.log(farthest / _EVEN) / np.log(growth))))
     half = np.concatenate([even, _EVEN * growth ** np.arange(1, count + 1)]).round(6)

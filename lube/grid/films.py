@@ -182,7 +182,7 @@ class FilmGroups:
         Viscosity of the oil at ambient pressure, Pa s.
     film_modulus : float or xarray.DataArray
         E' = 2 E*, Pa.
-    meniscus : float or None
+    meniscus : float, xarray.DataArray or None
         Distance from the line of centres to the meniscus of the oil, over R*; None if the contact
         is fully flooded.
     """
@@ -192,7 +192,7 @@ class FilmGroups:
     material: xr.DataArray
     viscosity: xr.DataArray
     film_modulus: float | xr.DataArray
-    meniscus: float | None
+    meniscus: float | xr.DataArray | None
 
     @classmethod
     def at(
@@ -236,8 +236,12 @@ class FilmGroups:
     @cached_property
     def profiles(self) -> xr.DataArray:
         """Profile of each film, solved numerically; None where it did not converge."""
+
+        def solved(*groups):
+            return profiles_of(*groups[:-1], meniscus=groups[-1])
+
         groups = self.load, self.speed, self.material, self.viscosity, self.film_modulus
-        return xr.apply_ufunc(partial(profiles_of, meniscus=self.meniscus), *groups, join="exact")
+        return xr.apply_ufunc(solved, *groups, self.meniscus, join="exact")
 
     @cached_property
     def central_film(self) -> xr.DataArray:

@@ -11,8 +11,11 @@ from lube.surfaces.contact_pressure import contact_pressure
 
 MOST = 0.95
 """Largest share that asperities may take of the load where it is shared with the oil."""
-ROUNDS, HALVINGS = 3, 40
-"""How often the film is found anew, and halvings of the range of shares each time."""
+ROUNDS, HALVINGS = 10, 40
+"""How often the film is found anew at most, and halvings of the range of shares each time."""
+FOUND, NEAR = 1e-5, 1e-3
+"""Change of a share below which it is found, and change of the logarithm of the load on the oil
+below which the power is kept, since computed films are rounded."""
 
 
 def surface_load_share(film: xr.Dataset, spec, has_shape: bool) -> xr.DataArray:
@@ -71,26 +74,35 @@ def share_load(
     -------
     films, share : xarray.DataArray
         Film thickness, m, and the share of the load that asperities carry under it. Above `MOST`
-        no balance was found.
+        no balance was found; both are NaN where a film on the way is not known.
 
     Notes
     -----
-    The film is nearly a power of the load on the oil; the power follows from the film at the last
-    share found. The width of the contact stays that of the whole load.
+    Between the last two shares the film is taken as a power of the load on the oil, and the next
+    share is the one that is balanced under this film. The width of the contact stays that of the
+    whole load.
     """
     whole, share_under = film["film_thickness"], _share_under(film, spec, has_shape)
 
-    def balanced(power):
+    def balanced(films, share, power):
         """Share at which the asperities, under the film that it leaves, carry just as much."""
         low, high = xr.zeros_like(whole), xr.full_like(whole, MOST)
         for _ in range(HALVINGS):
-            share = 0.5 * (low + high)
-            is_low = share_under(whole * (1.0 - share) ** -power) > share
-            low, high = low.where(~is_low, share), high.where(is_low, share)
-        return low.where(whole.notnull())
+            tried = 0.5 * (low + high)
+            is_low = share_under(films * ((1.0 - tried) / (1.0 - share)) ** -power) > tried
+            low, high = low.where(~is_low, tried), high.where(is_low, tried)
+        return low.where(films.notnull() & power.notnull()).clip(1e-6)
 
-    share = share_under(whole).clip(1e-6, 0.5)
+    films, share, power = whole, xr.zeros_like(whole), xr.zeros_like(whole)
+    other = share_under(whole).clip(1e-6, 0.5)
     for _ in range(ROUNDS):
-        share = balanced(-np.log(films_at(1.0 - share) / whole) / np.log1p(-share)).clip(1e-6)
-    films = films_at(1.0 - share)
+        before, films = films, films_at(1.0 - other)
+        change = np.log1p(-other) - np.log1p(-share)
+        apart = np.abs(change) > NEAR
+        power = power.where(~apart, -np.log(films / before) / change.where(apart))
+        share, other = other, balanced(films, other, power)
+        moves = np.abs(other - share) > FOUND
+        if not moves.any():
+            break
+        other = other.where(moves, share)  # found, whatever other points still need
     return films, share_under(films)

@@ -189,6 +189,19 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
     assert found["radius"].attrs["units"] == "mm"
 
 
+def test_the_oil_begins_at_one_distance_before_points_of_any_radius(rollers, oil):
+    table = {"force [N]": [400.0, 400.0], "temperature [degC]": [60.0, 60.0]}
+    table |= {"entrainment_speed [m/s]": [0.5, 0.5], "radius [mm]": [50.0, 20.0]}
+    starved = {"film_formula": "computed", "inlet_meniscus": "0.3 mm"}
+    found = lube.duty(table, rollers, oil, **starved, **RUNS)
+    for number, radius in enumerate(table["radius [mm]"]):
+        own = Rollers(f"{radius} mm", "0.2 um", second={"radius": "50 mm"})
+        expected = lube.film(own, oil, "400 N", "0.5 m/s", "60 degC", **starved)
+        for name in ("film_thickness", "starvation_factor"):
+            np.testing.assert_allclose(found[name][number], expected[name], rtol=2e-6)
+    assert (found["starvation_factor"] < 0.99).all()
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -29,6 +29,14 @@ def test_positions_reach_to_a_gap_that_no_line_fills(half_width, radius, roughne
     assert outside**2 / (2.0 * radius) >= 11.99 * roughness
 
 
+def test_positions_reach_as_far_as_the_contact_of_least_gap_needs():
+    """Contacts may differ in radius: the widest need not be the one whose gap opens last."""
+    half_widths, radii = np.array([9e-6, 1.1e-5, 8e-6]), np.array([0.05, 0.001, 0.002])
+    several = contact_of(("point", half_widths), ("point", radii))
+    each = [film_positions(contact_of(*one)) for one in zip(half_widths, radii, strict=True)]
+    np.testing.assert_array_equal(film_positions(several), max(each, key=np.size))
+
+
 def test_a_film_that_does_not_converge_is_missing_and_named(monkeypatch, caplog):
     monkeypatch.setattr(line_contact, "_MOST_STEPS", 3)
     speeds = np.array([1.0, 1.01]) * GROUPS[1]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from lube.grid.load_sharing import surface_load_share
+from lube.grid.load_sharing import share_load, surface_load_share
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.contact_pressure import contact_pressure
@@ -58,6 +58,31 @@ def test_the_film_is_that_of_the_load_that_the_asperities_leave(films, shape, st
         found = shared["film_thickness"].sel(here).item()
         assert found == pytest.approx(alone["film_thickness"].item(), rel=1e-3)
         assert found != pytest.approx(whole["film_thickness"].sel(here).item(), rel=1e-3)
+
+
+@pytest.mark.parametrize("formula", ["moes", "computed"])
+def test_the_balance_is_found_where_asperities_carry_most_of_the_load(formula, study, spec):
+    """With little load left rollers hardly deform, and the film is another power of the load."""
+    oil = lubricant_table(study.lubricants, [80.0])
+    conditions = oil, study.rollers, [100.0], [10.0, 15.0, 25.0], [formula]
+    shared = film_table(*conditions, rough_surfaces=spec, load_sharing="iterated").squeeze()
+    share, films = shared["surface_load_share"].values, shared["film_thickness"].values
+    assert share[0] > 0.8 > share[-1] > 0.6
+    for speed, part, film in zip(conditions[3], share, films, strict=True):
+        alone = film_table(oil, study.rollers, [100.0 * (1.0 - part)], [speed], [formula])
+        assert film == pytest.approx(alone["film_thickness"].item(), rel=2e-3)
+
+
+def test_without_the_film_of_the_rest_of_the_load_there_is_no_balance(films, spec):
+    whole = films[0, "none"].sel(film_formula="paper").isel(lubricant=0, force=1, speed=0)
+    whole = whole.drop_attrs()
+
+    def films_at(part):
+        return whole["film_thickness"].where(part > 0.95)
+
+    shared, share = share_load(whole, films_at, spec, False)
+    assert whole["surface_load_share"].values[1] > 0.05 > whole["surface_load_share"].values[0]
+    assert shared.isnull().values.tolist() == share.isnull().values.tolist() == [False, True]
 
 
 def test_without_asperities_that_touch_nothing_changes(films):
