@@ -47,7 +47,8 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
     ----------
     A. N. Grubin, Central Sci. Res. Inst. Technol. Mech. Eng., Book 30 (1949), here with an inlet
     of finite length. Against the solution of Reynolds' equation the factor is right to 0.02 at
-    M = 1.9 and above, to 0.09 at M = 1.2: ``tests/physics/test_starvation.py``.
+    M = 3 and above; at M = 1.9 to 0.02 at L = 10 and to 0.07 at L = 5:
+    ``tests/physics/test_starvation.py``.
 
     Examples
     --------

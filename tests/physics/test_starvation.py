@@ -9,7 +9,7 @@ from paper_grid import contact_at
 from refusals import one_line
 
 from lube.ehl.film_formulas import formula
-from lube.ehl.line_contact import solve
+from lube.ehl.line_contact import LineContact, solve
 from lube.errors import RangeError
 from lube.grid.films import FilmGroups
 from lube.physics.hertz import hertz_gap
@@ -73,6 +73,18 @@ def test_elastic_rollers_starve_as_by_reynolds_equation(point, bound):
         computed = solve(contact, meniscus=meniscus).central_film / flooded
         found = starvation_factor(flooded / contact.half_width**2, meniscus)
         assert found == pytest.approx(computed, abs=bound)
+
+
+@pytest.mark.parametrize(("moes_load", "most"), [(1.9, 0.07), (3.0, 0.025)])
+def test_it_starves_the_film_of_less_piezoviscous_oils_too_much(moes_load, most):
+    """At L = 5."""
+    material = 3693.0
+    speed = 0.5 * (5.0 / material) ** 4
+    contact = LineContact(moes_load * np.sqrt(2.0 * speed), speed, material, 0.28, 2.308e11)
+    flooded = solve(contact).central_film
+    computed = solve(contact, meniscus=2.0).central_film / flooded
+    found = starvation_factor(flooded / contact.half_width**2, 2.0)
+    assert computed - most < found < computed - 0.9 * most
 
 
 def test_between_rigid_rollers_it_starves_the_film_too_little():
