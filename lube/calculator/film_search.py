@@ -26,9 +26,11 @@ LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
 """Lambda ratios of the second look, over the one at which the first look finds the share."""
 AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
-"""The same if the film has a shape or the oil changes the lines, which the first look ignores."""
+"""The same for surfaces, and for lines if the film has a shape or the oil changes them, which the
+first look ignores."""
 EXPECTED = np.exp([-0.3, 0.1])
-"""The same for surfaces, at two films whose contacts theory expects: each takes many seconds."""
+"""The same for surfaces under films with a shape, or that the oil answers, where each film takes
+many seconds: at these two, theory says how many contacts to expect."""
 CLOSE = np.exp(np.linspace(-0.25, 0.15, 5))
 """Lambda ratios at which these surfaces are sampled, over the one at which theory has the share."""
 FARTHER = np.exp(np.linspace(0.1, 0.4, 4))
@@ -249,9 +251,9 @@ class FilmSearch:
             ratios, limits = (np.concatenate(each, axis=-1) for each in zip(*parts, strict=True))
             if np.isnan(parts[-1][1]).all():
                 break  # no film is known beyond those that did not converge
-            found = [(limits[1] > self._share).any(), (limits[2] < self._share).any()]
-            more = np.stack([min(tried) / FARTHER, max(tried) * FARTHER])[~np.array(found)]
-            more = np.setdiff1d(np.clip(more, *ends), tried)
+            farther = np.stack([min(tried) / FARTHER, max(tried) * FARTHER])
+            enclosed = np.array([limits[1] > self._share, limits[2] < self._share]).any(axis=1)
+            more = np.setdiff1d(np.clip(farther[~enclosed], *ends), tried)
         order = np.argsort(ratios)
         return ratios[order], limits[:, order]
 

@@ -302,7 +302,8 @@ class _SampledStrip:
     Attributes
     ----------
     film, sharp : numpy.ndarray
-        Film and breaking curvature at the columns of the strip, height steps.
+        Film, height steps, and breaking curvature, height steps per square metre, at the columns of
+        the strip.
     count : int
         Number of strips.
     is_certain : bool
