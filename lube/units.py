@@ -20,7 +20,7 @@ _QUANTITY = re.compile(rf"((?>{_NUMBER})(?:\s*/\s*\d+)?)\s*([^\s,;].*)?")
 # For speeds of rotation and frequencies.
 _TURNS = {"rpm": "rpm", "Hz": "turn/s"}
 _TURN = re.compile(r"(?<![A-Za-z])(?:U|r|rev)(?![A-Za-z])")
-_INVERSE = re.compile(r"(?<=[A-Za-z])-1(?!\d)")
+_POWER = re.compile(r"(?<=[A-Za-z])-?[1-9](?!\w)")
 
 ELECTRICAL = {"voltage": "V", "resistance": "ohm"}
 """Quantities that a record may hold, each with the unit of its values in memory."""
@@ -45,9 +45,14 @@ def _registry():
     try:
         # Every job needs pint's definitions, and to parse them takes ten times as long as to read
         # them from the cache in the user's folder.
-        return pint.UnitRegistry(cache_folder=":auto:")
+        return pint.UnitRegistry(cache_folder=":auto:", preprocessors=[_with_powers])
     except Exception:  # a folder that cannot be written, or a file that another job is writing
-        return pint.UnitRegistry()
+        return pint.UnitRegistry(preprocessors=[_with_powers])
+
+
+def _with_powers(units):
+    """Write ``mm2/s`` or ``kg m-3``, as data sheets and files do, as pint understands it."""
+    return _POWER.sub(r"^\g<0>", units)
 
 
 def parse_number(value: object) -> float:
@@ -147,7 +152,7 @@ def _in_turns(units, registry):
 
     Pint treats an angle as a pure number, so 100 1/min would be 15.9 rpm.
     """
-    units = registry.Unit("turn " + _INVERSE.sub("^-1", _TURN.sub("turn", units)))
+    units = registry.Unit("turn " + _TURN.sub("turn", units))
     is_angle_twice = "radian ** 2" in f"{registry.get_root_units(units)[1]}"
     return units / registry.turn if is_angle_twice else units
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import scipy
 
-from lube.contact.surface_answers import AnsweredStrip, moments_in_gap
+from lube.contact.surface_answers import AnsweredStrip, moments_in_gap, summit_moments
 from lube.grid.operating_points import surface_speeds
 from lube.physics import excursions
 from lube.surfaces.lay import cosine_and_sine
@@ -146,17 +146,24 @@ class StripFilm:
         Returns
         -------
         tuple of float
-            The second is NaN where the oil answers the surfaces.
+            Of the roughness in the gap. Its curvatures are those of the surfaces as drawn: they
+            are of short waves, which the oil hardly changes.
         """
         found, spacing = self.contacts(spec, length), self.width / COLUMNS
+        films, sharp = self.films(spacing), self.breaking_curvatures(spacing, sharp)
+        moments, weights = surface_moments(spec), found.density
         if self.answers:
-            return found.number, np.nan
-        # Films without a shape are the same everywhere.
-        some = slice(1) if self.has_edges else slice(None)
-        films, sharp = self.films(spacing)[some], self.breaking_curvatures(spacing, sharp)[some]
-        known = surface_moments(spec), sharp, curvature_moments(spec)
+            place = self._columns(spacing)
+            both = (
+                summit_moments(surface_waves(spec, roller), answer, place)
+                for roller, answer in enumerate(self.answers)
+            )
+            moments = excursions.SurfaceMoments(*sum(both), moments.curvature)
+        elif self.has_edges:  # the same everywhere
+            films, sharp, weights = films[:1], sharp[:1], weights[:1]
+        known = moments, sharp, curvature_moments(spec)
         share = excursions.sharp_surface_summit_share(films, *known)
-        return found.number, found.number * np.average(share, weights=found.density[some])
+        return found.number, found.number * np.average(share, weights=weights)
 
     def passage_width(
         self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0

@@ -131,6 +131,29 @@ def moments_in_gap(
     return moments(changed, kept, slopes) + moments(~changed, others, 0.0)
 
 
+def summit_moments(
+    waves: tuple[Array, Array, Array], answer: SurfaceAnswer, position: Array
+) -> Array:
+    """Compute how heights of a surface in the gap go with its curvatures as drawn.
+
+    Parameters
+    ----------
+    waves, answer, position
+        As in `moments_in_gap`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (4, columns)
+        Mean square height, m^2, and the mean products of the height with the curvatures along
+        rolling and along the rollers and with the twist, positive at summits.
+    """
+    along, across, power = waves
+    filters = answer.filters_at(along, across)
+    kept = 1.0 + np.einsum("cm,wm->cw", answer.at(position / answer.half_width), filters)
+    products = (kept.real * each for each in (along**2, across**2, along * across))
+    return np.stack([np.sum(each * power, axis=1) for each in (np.abs(kept) ** 2, *products)])
+
+
 class AnsweredStrip:
     """Both surfaces across a strip, with what the oil adds to them.
 

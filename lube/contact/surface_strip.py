@@ -126,8 +126,7 @@ def surface_contact(
         rollers move while a contact is in the strip, ``passage_width`` (m), and the scatter of a
         pair's share of breakthrough in a revolution of pure rolling, ``pair_deviation``, as
         `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film
-        is not known or not wanted. Where the oil answers the surfaces, ``expected_breakthroughs``
-        is NaN.
+        is not known or not wanted.
 
     Raises
     ------

@@ -320,8 +320,10 @@ def sharp_surface_summit_share(
 
     Parameters
     ----------
-    level, moments
-        As in `expected_contacts`.
+    level : numpy.ndarray
+        Levels, m, shape (levels,).
+    moments : SurfaceMoments
+        As in `expected_contacts`; those of heights and slopes for all levels or for each.
     curvature : float or numpy.ndarray
         Mean curvature, 1/m, for all levels or for each.
     curvatures : numpy.ndarray, shape (3, 3), optional
@@ -353,18 +355,19 @@ def sharp_surface_summit_share(
         return _share(*known, lambda kappa, _: kappa**2 + spread * np.expm1(-(kappa**2) / spread))
     # The two others at a given height, then at a given mean curvature, too: normal, with means that
     # follow both, and with what is left of their mean squares and product.
-    by_height = np.array([slopes, 0.5 * (along - across), mixed])
-    left = curvatures - np.outer(by_height, by_height) / height
+    by_height = np.array(np.broadcast_arrays(slopes, 0.5 * (along - across), mixed))
+    by_height = by_height.reshape(3, -1, 1, 1)
+    left = curvatures[..., None, None, None] - by_height[:, None] * by_height / _apart(height, 2)
     by_curvature = left[1:, 0] / left[0, 0]
-    left = left[1:, 1:] - left[0, 0] * np.outer(by_curvature, by_curvature)
+    left = left[1:, 1:] - left[0, 0] * by_curvature[:, None] * by_curvature
     least = 1e-12 * spread  # long ridges have no curvature along them
-    first = math.sqrt(max(left[0, 0], least))
+    first = np.sqrt(np.maximum(left[0, 0], least))
     shared = left[0, 1] / first
-    second = math.sqrt(max(left[1, 1] - shared**2, least))
+    second = np.sqrt(np.maximum(left[1, 1] - shared**2, least))
 
     def weight(kappa, mean):
         difference, twist = (
-            some / slopes * mean + other * (kappa - mean)
+            some / by_height[0] * mean + other * (kappa - mean)
             for some, other in zip(by_height[1:], by_curvature, strict=True)
         )
         total = 0.0
@@ -383,25 +386,30 @@ def _share(level, moments, least_curvature, weight, nodes=_MANY):
 
     They have a weight that depends on their curvature, and on its mean at their height.
     """
-    m0, covariance, variance = moments
+    m0, covariance, variance = (_apart(each) for each in moments)
     above, above_weights, curvatures, curvature_weights = _NODES[nodes]
     # Heights are integrated by Gauss-Laguerre quadrature, with z = h + m0 t / h.
-    scale = np.asarray(level, float)[..., None]
+    scale = _apart(level)
     height = scale + m0 / scale * above
     heights = above_weights * np.exp(-0.5 * m0 * (above / scale) ** 2)
     # Curvatures, which are normal at a given height, by Gauss-Legendre quadrature.
     mean = covariance / m0 * height
-    deviation = math.sqrt(variance - covariance**2 / m0)
+    deviation = np.sqrt(variance - covariance**2 / m0)
 
     def summits(least):
-        low = np.maximum(np.asarray(least)[..., None], mean - _WIDE * deviation)
+        low = np.maximum(_apart(least), mean - _WIDE * deviation)
         half = 0.5 * np.maximum(mean + _WIDE * deviation - low, 0.0)
         kappa = (low + half)[..., None] + half[..., None] * curvatures
-        normal = np.exp(-0.5 * ((kappa - mean[..., None]) / deviation) ** 2)
+        normal = np.exp(-0.5 * ((kappa - mean[..., None]) / deviation[..., None]) ** 2)
         inner = half * np.sum(curvature_weights * weight(kappa, mean[..., None]) * normal, axis=-1)
         return np.sum(heights * inner, axis=-1)
 
     return summits(least_curvature) / summits(0.0)
+
+
+def _apart(values, axes=1):
+    """Values with some more axes, which are those of the nodes of a quadrature."""
+    return np.reshape(values, (-1, *(1,) * axes))
 
 
 def breaking_curvature(
