@@ -15,6 +15,7 @@ from lube.contact.surface_strip import SURFACES
 from lube.ehl.film_formulas import formula
 from lube.grid.films import FilmGroups
 from lube.inference.record_curves import PROBABILITY, RecordCurves, realised_shares
+from lube.inference.surface_scatter import pair_correlation
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
@@ -58,8 +59,8 @@ def fit_alpha(curves: RecordCurves, study: Study, comparison: Data) -> Data:
         ``alpha_factor`` with ``_lower`` and ``_upper`` over (fitted_lubricant, film_formula): 1
         is the coefficient of the study. Beyond `ALPHA_FACTORS` the factor is NaN, a limit 0 or
         infinity. For ``alpha_factor_coverage`` each realisation in turn is left out of the ensemble
-        and taken as the records; it is the fraction of these cases whose interval contains 1, or
-        NaN if no realisation has contact.
+        and taken as the records, or each drawn pair of surfaces; it is the fraction of these cases
+        whose interval contains 1, or NaN if none has contact.
     """
     logits = alpha_logits(curves, comparison)
     model = curves.contact_model
@@ -200,8 +201,8 @@ def _fits(name, tried, truth, logits, study, comparison, contact_model):
         here = {"film_formula": number, "record": comparison["lubricant"].values == oils[oil]}
         model, records = logits.isel(here).values, comparison.isel(here)
         fits[:-1, oil, number] = fit_records(np.log(tried), model, records, contact_model)
-        if contact_model == "line":
-            fits[-1, oil, number] = _coverage(np.log(tried), np.log(truth), model, records)
+        coverage = _coverage if contact_model == "line" else _coverage_of_surfaces
+        fits[-1, oil, number] = coverage(np.log(tried), np.log(truth), model, records)
     variables = values_with_limits(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
     variables |= {"fitted_lubricant": oils, "film_formula": formulas}
     return xr.Dataset(with_dims("gauge", variables))
@@ -221,9 +222,8 @@ def fit_records(
     comparison : xarray.Dataset
         A ``comparison`` dataset of these P records and one film formula, without its dimension.
     contact_model : str, optional
-        ``line``; or ``surface``, whose probability is not that of the realisations: records have
-        the ``sample_size`` of the ``surface_records`` file, and are correlated as for the line.
-        Where no line stands for the surfaces, records of one pair are taken to deviate alike.
+        ``line``; or ``surface``, whose records have the ``sample_size`` of the ``surface_records``
+        file, and are correlated as `lube.inference.surface_scatter.pair_correlation` says.
 
     Returns
     -------
@@ -231,9 +231,18 @@ def fit_records(
         From `lube.statistics.curves.fit_factor`.
     """
     logits, comparison = _usable(logits, comparison)
-    logits, count = logits + _pooled_shift(comparison), SURFACES
-    covariance = _pair_scatter(comparison)
-    if "realisation" in comparison.dims:
+    logits, *known = _of_model(logits, comparison, contact_model)
+    shares, noise = comparison["measured_share"].values, comparison["share_error"].values
+    return fit_factor(log_factors, logits, shares, *known, noise)
+
+
+def _of_model(logits, comparison, contact_model):
+    """Logits, and weights and covariance of the records and what these rest on."""
+    logits, covariance = logits + _pooled_shift(comparison), _pair_scatter(comparison)
+    if contact_model == "surface":
+        size, count = comparison["sample_size"].values, SURFACES
+        covariance *= pair_correlation(comparison["simulated_probability"].values)
+    else:
         probabilities, trials = realised_shares(comparison)
         deviations = comparison["record_deviation"].values
         # Only the first realisations were run as records of several revolutions.
@@ -242,16 +251,12 @@ def fit_records(
         error, count = np.sqrt(comparison["pooled_error"].values), len(probabilities)
         of_mean = realisation_correlation(probabilities) * (error[:, None] * error)
         covariance += of_mean / count
-    if contact_model == "surface":
-        size = comparison["sample_size"].values
-    else:
         # Records weigh by their windows. The scatter between realisations is in their errors only:
         # as weights, it would make fits from few realisations look too good.
         size = windows_at_records(comparison)
         scale = np.sqrt(size / trials)
         covariance *= scale[:, None] * scale
-    shares, noise = comparison["measured_share"].values, comparison["share_error"].values
-    return fit_factor(log_factors, logits, shares, size, covariance, count, noise)
+    return logits, size, covariance, count
 
 
 def _usable(logits, comparison):
@@ -298,3 +303,15 @@ def _coverage(log_factors, truth, logits, comparison):
         return np.nan
     error = scatter * np.sqrt(1.0 + 1.0 / (count - 1))
     return np.mean(np.abs(misfit) <= quantile(count - 1) * error)
+
+
+def _coverage_of_surfaces(log_factors, truth, logits, comparison):
+    """As `_coverage`, if drawn records are taken as the records."""
+    logits, comparison = _usable(logits, comparison)
+    drawn = comparison["drawn_share"].values
+    if not drawn.any():
+        return np.nan
+    logits, *known = _of_model(logits, comparison, "surface")
+    known = *known, np.zeros(drawn.shape[1])  # without noise
+    limits = [fit_factor(log_factors, logits, shares, *known)[1:] for shares in drawn]
+    return np.mean([lower <= np.exp(truth) <= upper for lower, upper in limits])

@@ -4,10 +4,12 @@ As for lines (`lube.inference.record_scatter`) it depends on how long a record i
 the rollers' sizes. Its parts follow from the theory of `lube.contact.pair_scatter`.
 """
 
+import itertools
 from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
+import scipy
 import xarray as xr
 
 from lube.contact.pair_scatter import (
@@ -24,6 +26,9 @@ from lube.statistics.one_pair import prediction_limits, scatter_ratio
 from lube.surfaces.rough_surface import longest_waves
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair, Values
+
+PAIRS = 200
+"""Number of pairs of rollers whose records are drawn."""
 
 
 def revolution_size(spec: LineSpecLike, contact: xr.Dataset) -> Array:
@@ -67,6 +72,76 @@ def surface_prediction(
     """
     noise = np.hypot(noise, 0.25 * (limits[2] - limits[1]))
     return prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
+
+
+def pair_correlation(share: Array) -> Array:
+    r"""Correlation of the shares of records of one pair of surfaces.
+
+    Contacts under a thick film are also contacts under a thinner one, and their mean number in the
+    strip is :math:`t = -\ln(1 - p)`. So two records share the fraction :math:`t_1 / t_2` of the
+    contacts under the thinner film, and have the correlation :math:`(t_1 / t_2)^{1/2}`. On 600
+    pairs of rollers drawn whole, at films under which they touch for 2 to 90 % of the time, it was
+    0.12 less to 0.09 more.
+
+    Parameters
+    ----------
+    share : numpy.ndarray, shape (record,)
+        Probability p of breakthrough.
+
+    Returns
+    -------
+    numpy.ndarray, shape (record, record)
+    """
+    number = -np.log1p(-np.clip(share, 1e-12, 1.0 - 1e-12))
+    return np.sqrt(np.minimum(number, number[:, None]) / np.maximum(number, number[:, None]))
+
+
+def pair_shares(surfaces: xr.Dataset, pair: xr.DataArray, seed: int) -> Array:
+    r"""Draw the contact shares of all records of many pairs of rollers.
+
+    Contacts are few and independent, so the share of a record is to p as a number with Poisson's
+    distribution is to its mean,
+
+    .. math:: \mu = \frac{p n}{(1 - p) v} ,
+
+    but 1 at most: it then has the variance :math:`p (1 - p) v / n`. Records of one pair are
+    correlated as `pair_correlation` says, those of different pairs are independent.
+
+    Parameters
+    ----------
+    surfaces : xarray.Dataset
+        A ``surface_records`` dataset: probability p of breakthrough, effective sample size n of a
+        revolution, and ratio v.
+    pair : xarray.DataArray
+        Name of the pair that each record is of, over record.
+    seed : int
+        Seed of the study.
+
+    Returns
+    -------
+    numpy.ndarray, shape (PAIRS, film_formula, record)
+        Shares, which of each formula are of the same pairs; NaN where the film is not known.
+    """
+    names = "breakthrough_probability", "sample_size", "scatter_ratio"
+    share, size, ratio = (surfaces[name].values for name in names)
+    numbers, _ = pair.to_series().factorize()
+    found = np.broadcast_to(share, (PAIRS, *share.shape)).copy()
+    scatters = (share > 0.0) & (share < 1.0) & np.isfinite(size * ratio)
+    for row, number in itertools.product(range(len(share)), np.unique(numbers)):
+        some = np.flatnonzero(scatters[row] & (numbers == number))
+        mean = share[row, some]
+        expected = mean * size[row, some] / ((1.0 - mean) * ratio[some])
+        generator = np.random.default_rng((seed, PAIRS, number))
+        # In the order of the mean numbers of contacts each depends on the last alone.
+        rising = np.argsort(mean, kind="stable")
+        rate = -np.log1p(-mean[rising])
+        steps = generator.standard_normal((PAIRS, some.size))
+        normal = np.empty_like(steps)
+        normal[:, rising] = np.cumsum(steps * np.sqrt(np.diff(rate, prepend=0.0)), axis=1)
+        normal[:, rising] /= np.sqrt(rate)
+        contacts = scipy.stats.poisson.ppf(scipy.special.ndtr(normal), expected)
+        found[:, row, some] = np.minimum(mean / expected * contacts, 1.0)
+    return found
 
 
 def surface_scatter(

@@ -5,7 +5,7 @@ record is compared with a prediction interval: the range that contains the conta
 single pair's record in 95 % of cases if the model is correct. All records of a pair see the same
 roughness, so their deviations are correlated. The resulting scatter of the figures of agreement is
 estimated from the ensemble: each realisation in turn is left out and compared with the others as
-if it were the pair in the rig.
+if it were the pair in the rig. Of surfaces, records of many pairs are drawn for it.
 
 Measured records are compared with contact of the surfaces too, if the study asks for it. Those of a
 simulated rig that runs with lines are compared with lines alone.
@@ -26,7 +26,7 @@ from lube.contact.surface_strip import SURFACES
 from lube.grid.operating_points import over_contact_models
 from lube.inference.at_records import model_at_records, study_films_at_records
 from lube.inference.study_shares import levels_named, log_lines
-from lube.inference.surface_scatter import surface_prediction
+from lube.inference.surface_scatter import pair_shares, surface_prediction
 from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
 from lube.statistics.confidence import mean_or_nan, probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
@@ -50,7 +50,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         model, spec = study_films_at_records(study, experiment), study.line_spec
         model.attrs = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
     surfaces = inputs.get("surface_records")
-    return compare(model, experiment, film, study.contact_model, surfaces)
+    return compare(model, experiment, film, study.contact_model, surfaces, study.seed)
 
 
 def compare(
@@ -59,6 +59,7 @@ def compare(
     levels: xr.Dataset,
     contact_models: Sequence[str] = ("line",),
     surfaces: xr.Dataset | None = None,
+    seed: int = 0,
 ) -> xr.Dataset:
     """Compare simulated probabilities with measured contact shares, for each record and overall.
 
@@ -75,6 +76,8 @@ def compare(
         What records are compared with: the ``line``, the ``surface``, or both.
     surfaces : xarray.Dataset, optional
         A ``surface_records`` dataset, if records are compared with surfaces.
+    seed : int, optional
+        Seed of the study, for the records of surfaces that are drawn.
 
     Returns
     -------
@@ -84,19 +87,20 @@ def compare(
         the measured share lies in it; figures of agreement for every film formula and
         threshold, with their range for a correct model; and the simulated and measured means over
         the records at every force, speed and temperature. With surfaces these are also over
-        contact_model; surfaces are compared without the range for a correct model. The attribute
+        contact_model. The attribute
         ``missing`` lists operating points without a record, ``remarks`` records of one point that
         contradict each other.
     """
     table = _table(model, experiment).set_coords([*AT_RECORDS, "origin"])
     sides = {}
     if "realisation" in table.dims:
-        sides["line"] = _of_lines(table)
+        sides["line"] = _of_lines(table), _ranges_of_lines(table)
     if surfaces is not None:
-        sides["surface"] = _of_surfaces(table, surfaces)
+        ranges = _ranges_of_surfaces(table, surfaces, seed)
+        sides["surface"] = _of_surfaces(table, surfaces), ranges
     tables = {}
-    for contact_model, of_model in sides.items():
-        found = _judged(table, experiment, of_model) | _expected(table, contact_model)
+    for contact_model, (of_model, ranges) in sides.items():
+        found = _judged(table, experiment, of_model) | _expected(ranges)
         tables[contact_model] = table.assign(with_dims("comparison", found))
     first = next(iter(tables.values()))
     notes = {"missing": _missing(first, levels), "remarks": _contradictions(first)}
@@ -222,25 +226,8 @@ def _rank_correlation(first, second):
     return np.sum(first * second) / np.sqrt(np.sum(first**2) * np.sum(second**2))
 
 
-def _expected(table, contact_model):
-    """95 % range of each figure of agreement if the model is correct, over film_formula.
-
-    Each realisation in turn is left out of the ensemble and compared with the others as the
-    records of a pair of rollers, at all of its records at once; a second pair's is the next
-    realisation. It deviates from the others as much more or less than in one revolution as records
-    do. NaN for surfaces, which have none.
-    """
-    ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
-    if contact_model == "line":
-        measured = np.isfinite(table["measured_share"].values)
-        windows = windows_at_records(table)
-        by_formula = table["breakthrough_probability"].values.swapaxes(0, 1)
-        scatter, pair = table["scatter_ratio"].values, table["pair"].to_series().factorize()[0]
-        for row, (members, ratio) in enumerate(zip(by_formula, scatter, strict=True)):
-            known = measured & np.isfinite(members).all(axis=0)
-            if len(members) > 2 and known.any():
-                of_known = windows[known], ratio[known], pair[known]
-                ranges[row] = _ranges(members[:, known], *of_known)
+def _expected(ranges):
+    """Variables of the 95 % ranges of the figures of agreement if the model is correct."""
     return {
         f"{name}_expected{side}": ranges[:, figure, end]
         for figure, name in enumerate(FIGURES)
@@ -248,7 +235,49 @@ def _expected(table, contact_model):
     }
 
 
-def _ranges(members, windows, ratio, pair):
+def _ranges_of_lines(table):
+    """95 % range of each figure of agreement, shape (formulas, figures, 2).
+
+    Each realisation in turn is left out of the ensemble and compared with the others as the
+    records of a pair of rollers, at all of its records at once; a second pair's is the next
+    realisation. It deviates from the others as much more or less than in one revolution as records
+    do.
+    """
+    ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
+    measured = np.isfinite(table["measured_share"].values)
+    windows = windows_at_records(table)
+    by_formula = table["breakthrough_probability"].values.swapaxes(0, 1)
+    scatter, pair = table["scatter_ratio"].values, table["pair"].to_series().factorize()[0]
+    for row, (members, ratio) in enumerate(zip(by_formula, scatter, strict=True)):
+        known = measured & np.isfinite(members).all(axis=0)
+        if len(members) > 2 and known.any():
+            of_known = windows[known], ratio[known], pair[known]
+            ranges[row] = _left_out(members[:, known], *of_known)
+    return ranges
+
+
+def _ranges_of_surfaces(table, surfaces, seed):
+    """As `_ranges_of_lines`, of drawn records."""
+    ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
+    measured = np.isfinite(table["measured_share"].values)
+    drawn = pair_shares(surfaces, table["pair"], seed)
+    names = "breakthrough_probability", "sample_size"
+    ratio, known = surfaces["scatter_ratio"].values, (surfaces[name].values for name in names)
+    for row, (mean, size) in enumerate(zip(*known, strict=True)):
+        some = measured & np.isfinite(mean)
+        if some.any():
+            limits = prediction_limits(mean, size, ratio, SURFACES, mean_error=0.0)
+            sides = [each[some] for each in (mean, *limits)]
+            ranges[row] = _range([agreement(*sides, each[some]) for each in drawn[:, row]])
+    return ranges
+
+
+def _range(rows):
+    """95 % range of each figure over some rows of figures, shape (figures, 2)."""
+    return pd.DataFrame(rows)[list(FIGURES)].quantile([0.025, 0.975]).T  # of the known ones
+
+
+def _left_out(members, windows, ratio, pair):
     """Range of each figure over the realisations left out, shape (figures, 2)."""
     sides = []
     for number, member in enumerate(members):
@@ -261,8 +290,7 @@ def _ranges(members, windows, ratio, pair):
         sides.append(np.broadcast_arrays(mean, *limits, shares))
     left_out = (np.arange(len(members))[:, None] + pair) % len(members)
     by_record = np.array(sides)[left_out, :, np.arange(pair.size)]
-    rows = [agreement(*one.T) for one in by_record]
-    return pd.DataFrame(rows)[list(FIGURES)].quantile([0.025, 0.975]).T  # of the known ones
+    return _range([agreement(*one.T) for one in by_record])
 
 
 def _level_means(table, simulated):

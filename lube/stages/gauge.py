@@ -14,11 +14,14 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.contact.surface_strip import SURFACES
 from lube.inference.fits import fit_alpha, fit_layer_strength
 from lube.inference.record_curves import RecordCurves, gauged_ratios, map_curves, own_curves
 from lube.inference.surface_records import reading_errors, surface_curves
+from lube.inference.surface_scatter import pair_shares
 from lube.schema import AT_RECORDS, label, values_with_limits, with_dims
 from lube.statistics.confidence import mean_or_nan
+from lube.statistics.curves import film_interval
 from lube.statistics.one_pair import quantile, standard_error
 from lube.study.study import Study
 from lube.types import Datasets
@@ -41,7 +44,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     for model in comparison["contact_model"].values:
         records = comparison.sel(contact_model=model, drop=True)
         if model == "surface":
-            records = _of_surfaces(records, inputs["surface_records"])
+            records = _of_surfaces(records, inputs["surface_records"], study.seed)
             curves = surface_curves(inputs["surface_records"], records, study.gap.has_shape)
         else:
             curves = by_line(records)
@@ -50,11 +53,12 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     return _with_records(by_model, study.boundary_layer.strength, comparison)
 
 
-def _of_surfaces(comparison, surfaces):
-    """Comparison with surfaces, as the fits read it.
+def _of_surfaces(comparison, surfaces, seed):
+    """Comparison with surfaces, as the fits read it, with drawn records.
 
     Its probability has no error from realisations, but that of its curve adds to the noise.
     """
+    comparison = comparison.drop_dims("realisation", errors="ignore")
     probability, noise = comparison["simulated_probability"], comparison["share_error"]
     errors = reading_errors(surfaces, comparison["measured_share"].values)
     return comparison.assign(
@@ -63,6 +67,10 @@ def _of_surfaces(comparison, surfaces):
         share_error=noise.copy(data=np.hypot(noise.values, errors)),
         scatter_ratio=xr.zeros_like(probability) + surfaces["scatter_ratio"].drop_attrs(),
         sample_size=surfaces["sample_size"].drop_attrs(),
+        drawn_share=(
+            ("drawn_pair", "film_formula", "record"),
+            pair_shares(surfaces, comparison["pair"], seed),
+        ),
     )
 
 
@@ -145,6 +153,7 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
     Each realisation in turn is left out of the ensemble and gauged with the others, as a record of
     one pair of rollers, one revolution long, at the films of the first formula. Its interval
     contains the true film if its share lies within the prediction interval of the others there.
+    Of surfaces, records of drawn pairs are gauged.
 
     Parameters
     ----------
@@ -157,14 +166,17 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         Over ``record``: ``interval_coverage`` of all intervals, ``closed_coverage`` of those
         with two limits, ``one_sided_coverage`` of the others, and ``closed_share``, the fraction
         of intervals with two limits; NaN where there are no such intervals, or the ensemble has
-        fewer than three realisations, and for surfaces.
+        fewer than three realisations.
     """
     coverage = np.full((4, comparison.sizes["record"]), np.nan)
-    if curves.contact_model == "line" and comparison.sizes["realisation"] > 2:
-        members = comparison["breakthrough_probability"].values[:, 0]
+    is_line = curves.contact_model == "line"
+    members = comparison["breakthrough_probability" if is_line else "drawn_share"].values[:, 0]
+    if len(members) > 2:
         films = np.log(comparison["lambda_ratio"].values[0])
+        ratios = comparison["scatter_ratio"].values[0]
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
-            held, closed = _leave_one_out(curve, film, members[:, record])
+            given = curve, film, members[:, record]
+            held, closed = _leave_one_out(*given) if is_line else _of_drawn(*given, ratios[record])
             cases = held, held[closed], held[~closed], closed
             coverage[:, record] = [mean_or_nan(each) for each in cases]
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")
@@ -179,6 +191,14 @@ def _leave_one_out(curve, film, shares):
     thinnest, here, thickest = (_distance(curve, each, shares) for each in ends)
     limit = quantile(shares.size - 1)
     return np.abs(here) <= limit, (thinnest < -limit) & (thickest > limit)
+
+
+def _of_drawn(curve, film, shares, ratio):
+    """As `_leave_one_out`, of drawn records; none where their film is not known."""
+    known = shares[np.isfinite(shares)]
+    limits = [film_interval(curve, share, ratio, SURFACES)[1:] for share in known.tolist()]
+    lower, upper = np.reshape(limits, (-1, 2)).T
+    return (lower <= film) & (film <= upper), np.isfinite(lower) & np.isfinite(upper)
 
 
 def _distance(curve, film, shares):

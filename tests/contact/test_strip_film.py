@@ -15,6 +15,7 @@ from lube.contact.surface_strip import SURFACES as SAMPLED
 from lube.contact.surface_strip import surface_contact
 from lube.grid.operating_points import surface_speeds
 from lube.inference.planning import half_widths, on_surfaces, relative_error
+from lube.inference.surface_scatter import pair_correlation
 from lube.statistics.curves import contact_curve, film_interval
 from lube.statistics.one_pair import quantile
 from lube.surfaces.rough_surface import field, rough_surface
@@ -78,6 +79,16 @@ def test_the_share_of_a_revolution_scatters_between_pairs_as_expected(spec, surf
     # Of 80 pairs a standard deviation is known to 8 %.
     assert np.all(np.abs(np.log(ratios)) < 0.2)
     assert abs(np.mean(np.log(ratios))) < 0.1
+
+
+def test_records_of_a_pair_are_correlated_as_pairs_drawn_whole(spec, surface, rollers):
+    found = []
+    for ratio in (2.7, 3.1, 3.5):
+        film = StripFilm.flat(ratio * np.sqrt(surface_moments(spec).height), 0.5 * WIDTH)
+        found.append(shares(rollers, film.films(surface.spacing[1])))
+    expected = pair_correlation(np.mean(found, axis=1))
+    # Of 80 pairs correlations are known to 0.1.
+    np.testing.assert_allclose(np.corrcoef(found), expected, atol=0.25)
 
 
 def answered_shares(spec, surface, strip, generator):

@@ -11,7 +11,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import strip_films, surface_contact
 from lube.grid.gap import PLAIN, Gap
 from lube.inference.at_records import study_films_at_records
-from lube.inference.surface_scatter import surface_scatter
+from lube.inference.surface_scatter import pair_correlation, pair_shares, surface_scatter
 from lube.statistics.one_pair import drift_factor
 
 SHARES, ANSWERED = np.array([0.05, 0.4, 0.4]), Gap("flat", "computed")
@@ -39,6 +39,29 @@ def with_rollers(study, **second):
     return study.model_copy(
         update={"rollers": study.rollers.model_copy(update={"second": rollers})}
     )
+
+
+def records_of(share, size, ratio):
+    """A ``surface_records`` dataset, as far as pairs are drawn from it."""
+    values = {"breakthrough_probability": share, "sample_size": size}
+    records = {name: (("film_formula", "record"), [each]) for name, each in values.items()}
+    return xr.Dataset(records | {"scatter_ratio": ("record", ratio)})
+
+
+def test_records_of_drawn_pairs_scatter_and_are_correlated_as_contacts_under_one_another():
+    share, size = np.array([0.3, 0.02, 0.3, 0.0, 1.0, np.nan]), np.full(6, 400.0)
+    ratio = np.array([1.0, 1.0, 0.5, 1.0, 1.0, 1.0])
+    pair = xr.DataArray(["a", "a", "b", "a", "b", "a"], dims="record")
+    records = records_of(share, size, ratio)
+    drawn = np.concatenate([pair_shares(records, pair, seed)[:, 0] for seed in range(20)])
+    some, deviation = slice(3), np.sqrt(share * (1.0 - share) * ratio / size)[:3]
+    np.testing.assert_allclose(drawn[:, some].mean(axis=0), share[some], rtol=0.02)
+    np.testing.assert_allclose(drawn[:, some].std(axis=0), deviation, rtol=0.05)
+    np.testing.assert_array_equal(drawn[0, 3:], share[3:])
+    known = np.eye(3)
+    known[:2, :2] = pair_correlation(share[:2])
+    assert known[0, 1] == pytest.approx(np.sqrt(np.log(0.98) / np.log(0.7)))
+    np.testing.assert_allclose(np.corrcoef(drawn[:, some].T), known, atol=0.05)
 
 
 def test_equal_rollers_in_pure_rolling_repeat_themselves(busy_study):

@@ -9,12 +9,14 @@ from experiments import (
     SURFACE_WINDOWS,
     experiment_at,
     experiment_of,
+    made_up_surfaces,
     model_of_records,
     surface_probability,
 )
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lube.inference.surface_scatter import pair_shares
 from lube.schema import check
 from lube.stages.comparison import FIGURES, GROUPS, agreement, compare
 from lube.statistics.one_pair import quantile
@@ -342,7 +344,28 @@ def test_surfaces_are_compared_by_every_film_formula(on_surfaces, busy, mean):
     exact = surface_probability(found["lambda_ratio"].values)
     np.testing.assert_allclose(found["simulated_probability"], exact, rtol=1e-12)
     assert (found["compared_records"] == experiment.sizes["record"]).all()
-    assert found["bias_expected_lower"].isnull().all()
+
+
+def test_records_of_surfaces_deviate_as_expected_under_the_right_film_alone(
+    on_surfaces, busy, mean
+):
+    grid = busy.study.operating_grid.model_dump()
+    found = on_surfaces(experiment_at(grid, mean)).sel(contact_model="surface")
+    exact = found["simulated_probability"].isel(film_formula=0).values
+    drawn = pair_shares(made_up_surfaces(found["lambda_ratio"]), found["pair"], 5)[:, 0]
+    inside = []
+    for shares in (*drawn[:20], 0.8 * exact):
+        again = on_surfaces(experiment_at(grid, shares)).sel(contact_model="surface")
+        again = again.isel(film_formula=0).sel(threshold=100.0)
+        inside.append(
+            [
+                (again[f"{name}_expected_lower"] <= again[name]).item()
+                and (again[name] <= again[f"{name}_expected_upper"]).item()
+                for name in FIGURES
+            ]
+        )
+    assert np.mean(inside[:-1]) > 0.9
+    assert not any(inside[-1])
 
 
 def test_without_lines_surfaces_are_compared_as_with_them(without_lines, on_surfaces, busy, mean):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from experiments import (
     LAYER_BREAKS,
     LAYER_STRENGTHS,
@@ -353,7 +354,7 @@ def test_the_coefficient_is_fitted_by_surfaces(busy, on_surfaces):
     assert (found["alpha_factor_lower"] < found["alpha_factor"]).all()
     assert (found["alpha_factor"] < found["alpha_factor_upper"]).all()
     for name in ("interval", "alpha_factor", "fitted_layer_strength"):
-        assert found[f"{name}_coverage"].isnull().all()
+        assert 0.9 < found[f"{name}_coverage"].mean() <= 1.0
 
 
 def test_the_layer_is_fitted_by_surfaces_where_it_changes_contact(busy, on_surfaces):
@@ -371,27 +372,15 @@ def test_the_layer_is_fitted_by_surfaces_where_it_changes_contact(busy, on_surfa
         assert (lower == 0.0) == (number == 0) and (upper == np.inf) == (number == 3)
 
 
-def test_without_lines_films_are_gauged_as_with_them_and_alpha_less_exactly(
+def test_without_lines_films_are_gauged_and_alpha_fitted_as_with_them(
     busy, on_surfaces, without_lines
 ):
-    """Records of one pair are then taken to deviate alike."""
     _, experiment = surface_experiment(busy, thinner=1.1)
     comparisons = on_surfaces(experiment), without_lines(experiment)
     both, alone = (gauge_on_surfaces(busy, one) for one in comparisons)
     assert check(alone, "gauge") is alone
     both, alone = (one.sel(contact_model="surface") for one in (both, alone))
-    for limit in LIMITS:
-        name = f"gauged_lambda_ratio{limit}"
-        found, known = alone[name].values, both[name].values
-        np.testing.assert_allclose(found, known, rtol=0.2)
-    films = [one["gauged_film_thickness"].values for one in (both, alone)]
-    np.testing.assert_array_equal(*films)
-    value, lower, upper = (
-        [one[f"alpha_factor{limit}"].values[0, 0] for one in (both, alone)] for limit in LIMITS
-    )
-    assert value[1] == pytest.approx(value[0], rel=0.05)
-    assert lower[1] < lower[0] < upper[0] < upper[1]
-    assert alone["study_layer_strength"] == both["study_layer_strength"]
+    xr.testing.assert_identical(alone[list(both)].drop_attrs(), both.drop_attrs())
     assert alone["fitted_records"] == 12
 
 
