@@ -21,6 +21,7 @@ _QUANTITY = re.compile(rf"((?>{_NUMBER})(?:\s*/\s*\d+)?)\s*([^\s,;].*)?")
 _TURNS = {"rpm": "rpm", "Hz": "turn/s"}
 _TURN = re.compile(r"(?<![A-Za-z])(?:U|r|rev)(?![A-Za-z])")
 _POWER = re.compile(r"(?<=[A-Za-z])-?[1-9](?!\w)")
+_PASCAL_SECOND = re.compile(r"\b(\w?Pa)s\b")  # pint would read mPas as millipascals
 
 ELECTRICAL = {"voltage": "V", "resistance": "ohm"}
 """Quantities that a record may hold, each with the unit of its values in memory."""
@@ -51,8 +52,8 @@ def _registry():
 
 
 def _with_powers(units):
-    """Write ``mm2/s`` or ``kg m-3``, as data sheets and files do, as pint understands it."""
-    return _POWER.sub(r"^\g<0>", units)
+    """Write ``mm2/s``, ``kg m-3`` or ``mPas``, as data sheets and files do, for pint."""
+    return _PASCAL_SECOND.sub(r"(\1*s)", _POWER.sub(r"^\g<0>", units))
 
 
 def parse_number(value: object) -> float:

@@ -31,6 +31,7 @@ FACTORS = [
     *(("g/cm^3", "kg/m^3", 1e3), ("uohm*m", "ohm*m", 1e-6), ("1/GPa", "1/Pa", 1e-9)),
     # As data sheets and NetCDF files write them.
     *(("mm2/s", "m^2/s", 1e-6), ("mm2 s-1", "m^2/s", 1e-6), ("kg/m3", "kg/m^3", 1.0)),
+    ("mPas", "Pa*s", 1e-3),
     *(("N/mm2", "Pa", 1e6), ("GPa-1", "1/Pa", 1e-9), ("inH2O", "Pa", 249.08891)),
     *(("turn/s", "rpm", 60.0), ("rad/s", "rpm", 30.0 / math.pi)),
     *(("kHz", "Hz", 1e3), ("1/s", "Hz", 1.0)),  # a frequency that is no rotation stays one

@@ -12,6 +12,9 @@ from lube.study.study import Study
 SATURATED = 0.001
 """Largest part of the samples that may lie at the amplifier's limits."""
 
+REVERSED = 0.001
+"""Largest part of the samples that may lie further below zero than half the bias voltage."""
+
 
 def lubricant_of(entry: Entry, study: Study) -> str:
     """Find the lubricant of a record, whose conditions must be within the study's model.
@@ -53,7 +56,7 @@ def open_entry(entry: Entry) -> Recording:
 
 
 def unsaturated_pieces(recording: Recording, study: Study) -> Iterator[np.ndarray]:
-    """Read a recording, which must be within the range of the rig's amplifier.
+    """Read a recording, which must be within the range of the rig's amplifier, and not reversed.
 
     Parameters
     ----------
@@ -70,17 +73,26 @@ def unsaturated_pieces(recording: Recording, study: Study) -> Iterator[np.ndarra
     Raises
     ------
     DataError
-        After the last piece, if too many samples are saturated; and as from `Recording.pieces`.
+        After the last piece, if too many samples are saturated, or of the wrong sign, which would
+        count as contact; and as from `Recording.pieces`.
     """
     # An infinite resistance is an open circuit; none is at or beyond NaN.
-    limit = study.rig.amplifier_range if recording.quantity == "voltage" else np.nan
-    samples = saturated = 0
+    is_voltage = recording.quantity == "voltage"
+    limit = study.rig.amplifier_range if is_voltage else np.nan
+    lowest = -0.5 * study.rig.bias_voltage if is_voltage else np.nan
+    samples = saturated = reversed_ = 0
     for piece in recording.pieces():
         samples += piece.size
         saturated += np.count_nonzero(np.abs(piece) >= limit)
+        reversed_ += np.count_nonzero(piece < lowest)
         yield piece
     if saturated > SATURATED * samples:
         raise DataError(
             f"{recording.path}: saturated, {saturated / samples:.1%} of its samples are at or "
             f"beyond {limit:g} V, need at most {SATURATED:.1%} beyond rig.amplifier_range"
+        )
+    if reversed_ > REVERSED * samples:
+        raise DataError(
+            f"{recording.path}: reversed, {reversed_ / samples:.1%} of its samples are below "
+            f"{lowest:g} V, need at most {REVERSED:.1%}; a gain below 0 turns the sign"
         )

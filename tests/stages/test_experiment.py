@@ -353,6 +353,16 @@ def test_what_cannot_be_used_is_refused_in_one_line(measured, tmp_path):
         assert line.startswith("manifest.csv: line 2: ") or row.split(",")[0] in line
 
 
+def test_a_reversed_voltage_is_refused_and_not_counted_as_contact(measured, tmp_path):
+    """The open circuit of 50 mV is recorded as -50 mV; near zero, noise may have either sign."""
+    volts = np.where(np.arange(1000) % 4, -0.05, 0.001 * (-1.0) ** (np.arange(1000) // 4))
+    written(tmp_path / "volts.csv", volts, head="U [V]")
+    (line,) = refusals(measured, "volts.csv,800,100,40")
+    assert "volts.csv: reversed, 75.0% of its samples are below -0.025 V" in line
+    here = measured("volts.csv,800,100,40,-1", header=f"{COLUMNS},gain")
+    assert at_100_ohm(here)["contact_share"] == 0.25 and here.refused == ""
+
+
 def test_no_record_at_all_is_an_error(measured):
     with pytest.raises(DataError, match=r"no record can be used, .*; the first: .*broken.csv"):
         measured("broken.csv,800,100,40")
