@@ -46,13 +46,13 @@ def _registry():
     try:
         # Every job needs pint's definitions, and to parse them takes ten times as long as to read
         # them from the cache in the user's folder.
-        return pint.UnitRegistry(cache_folder=":auto:", preprocessors=[_with_powers])
+        return pint.UnitRegistry(cache_folder=":auto:", preprocessors=[_as_in_pint])
     except Exception:  # a folder that cannot be written, or a file that another job is writing
-        return pint.UnitRegistry(preprocessors=[_with_powers])
+        return pint.UnitRegistry(preprocessors=[_as_in_pint])
 
 
-def _with_powers(units):
-    """Write ``mm2/s``, ``kg m-3`` or ``mPas``, as data sheets and files do, for pint."""
+def _as_in_pint(units):
+    """Spell ``mm2/s``, ``kg m-3`` or ``mPas``, as data sheets and files have them, as in pint."""
     return _PASCAL_SECOND.sub(r"(\1*s)", _POWER.sub(r"^\g<0>", units))
 
 

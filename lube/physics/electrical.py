@@ -171,7 +171,8 @@ def mean_inverse_gap(film_thickness: Values, rms: Values, layer: float) -> Value
     Returns
     -------
     float or numpy.ndarray
-        1/m; more than one over the film thickness. Between smooth surfaces it is exactly that.
+        1/m. Between smooth surfaces it is one over the film thickness, and between rough ones more,
+        if the layer is thin compared with the film.
 
     Examples
     --------

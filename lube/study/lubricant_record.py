@@ -75,7 +75,8 @@ class Viscosity(Sourced):
 class Density(Sourced):
     """Density falling linearly with temperature about 15 degC."""
 
-    at_15_degC: Annotated[float, quantity("kg/m^3", above=0.0)]
+    # The range holds all liquids that lubricate, and neither g/cm^3 nor g/l by mistake.
+    at_15_degC: Annotated[float, quantity("kg/m^3", least=400.0, most=2500.0)]
     """density at 15 degC"""
     thermal_coefficient: Annotated[float, quantity("1/K", least=0.0, below=2e-3)]
     """relative fall of the density per kelvin"""
