@@ -312,6 +312,6 @@ def _coverage_of_surfaces(log_factors, truth, logits, comparison):
     if not drawn.any():
         return np.nan
     logits, *known = _of_model(logits, comparison, "surface")
-    known = *known, np.zeros(drawn.shape[1])  # without noise
+    known = *known, comparison["share_error"].values
     limits = [fit_factor(log_factors, logits, shares, *known)[1:] for shares in drawn]
     return np.mean([lower <= np.exp(truth) <= upper for lower, upper in limits])

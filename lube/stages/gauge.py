@@ -173,10 +173,13 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
     members = comparison["breakthrough_probability" if is_line else "drawn_share"].values[:, 0]
     if len(members) > 2:
         films = np.log(comparison["lambda_ratio"].values[0])
-        ratios = comparison["scatter_ratio"].values[0]
+        ratios, noise = comparison["scatter_ratio"].values[0], comparison["share_error"].values
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
             given = curve, film, members[:, record]
-            held, closed = _leave_one_out(*given) if is_line else _of_drawn(*given, ratios[record])
+            if is_line:
+                held, closed = _leave_one_out(*given)
+            else:
+                held, closed = _of_drawn(*given, ratios[record], noise[record])
             cases = held, held[closed], held[~closed], closed
             coverage[:, record] = [mean_or_nan(each) for each in cases]
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")
@@ -193,10 +196,10 @@ def _leave_one_out(curve, film, shares):
     return np.abs(here) <= limit, (thinnest < -limit) & (thickest > limit)
 
 
-def _of_drawn(curve, film, shares, ratio):
+def _of_drawn(curve, film, shares, ratio, noise):
     """As `_leave_one_out`, of drawn records; none where their film is not known."""
     known = shares[np.isfinite(shares)]
-    limits = [film_interval(curve, share, ratio, SURFACES)[1:] for share in known.tolist()]
+    limits = [film_interval(curve, share, ratio, SURFACES, noise)[1:] for share in known.tolist()]
     lower, upper = np.reshape(limits, (-1, 2)).T
     return (lower <= film) & (film <= upper), np.isfinite(lower) & np.isfinite(upper)
 
