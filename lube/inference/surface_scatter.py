@@ -29,6 +29,8 @@ from lube.types import Array, Pair, Values
 
 PAIRS = 200
 """Number of pairs of rollers whose records are drawn."""
+CERTAIN = 1.0 - 1e-9
+"""Probability from which on no record of a pair differs."""
 
 
 def revolution_size(spec: LineSpecLike, contact: xr.Dataset) -> Array:
@@ -126,7 +128,7 @@ def pair_shares(surfaces: xr.Dataset, pair: xr.DataArray, seed: int) -> Array:
     share, size, ratio = (surfaces[name].values for name in names)
     numbers, _ = pair.to_series().factorize()
     found = np.broadcast_to(share, (PAIRS, *share.shape)).copy()
-    scatters = (share > 0.0) & (share < 1.0) & np.isfinite(size * ratio)
+    scatters = (share > 0.0) & (share < CERTAIN) & np.isfinite(size * ratio)
     for row, number in itertools.product(range(len(share)), np.unique(numbers)):
         some = np.flatnonzero(scatters[row] & (numbers == number))
         mean = share[row, some]

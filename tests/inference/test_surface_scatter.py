@@ -49,9 +49,10 @@ def records_of(share, size, ratio):
 
 
 def test_records_of_drawn_pairs_scatter_and_are_correlated_as_contacts_under_one_another():
-    share, size = np.array([0.3, 0.02, 0.3, 0.0, 1.0, np.nan]), np.full(6, 400.0)
-    ratio = np.array([1.0, 1.0, 0.5, 1.0, 1.0, 1.0])
-    pair = xr.DataArray(["a", "a", "b", "a", "b", "a"], dims="record")
+    certain = 1.0 - 1e-16 * np.array([1.0, 2.0, 4.0])
+    share, size = np.array([0.3, 0.02, 0.3, 0.0, *certain, np.nan]), np.full(8, 400.0)
+    ratio = np.where(np.arange(8) == 2, 0.5, 1.0)
+    pair = xr.DataArray(list("aabababa"), dims="record")
     records = records_of(share, size, ratio)
     drawn = np.concatenate([pair_shares(records, pair, seed)[:, 0] for seed in range(20)])
     some, deviation = slice(3), np.sqrt(share * (1.0 - share) * ratio / size)[:3]
