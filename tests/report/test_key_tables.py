@@ -46,7 +46,7 @@ def test_a_key_has_its_unit_limits_and_default():
         "| `experiment.thresholds` | values and units in ohm, above 0 (by default 10": "study",
         "| `gain` | number, other than 0 (by default 1) |": "manifest",
         "| `temperature_tolerance` | quantity in K, above 0 (optional) |": "manifest",
-        "| `density.at_15_degC` | quantity in kg/m^3, above 0 (section optional) |": "record",
+        "| `density.at_15_degC` | quantity in kg/m^3, at least 400": "record",
     }.items():
         assert any(line.startswith(row) for line in lines[name]), row
 
