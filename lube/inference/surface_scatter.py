@@ -101,7 +101,7 @@ def pair_correlation(share: Array) -> Array:
 def pair_shares(surfaces: xr.Dataset, pair: xr.DataArray, seed: int) -> Array:
     r"""Draw the contact shares of all records of many pairs of rollers.
 
-    Contacts are few and independent, so the share of a record is to p as a number with Poisson's
+    Contacts pass independently, so the share of a record is to p as a number with Poisson's
     distribution is to its mean,
 
     .. math:: \mu = \frac{p n}{(1 - p) v} ,

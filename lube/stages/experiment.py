@@ -22,6 +22,7 @@ from lube.schema import AT_RECORDS, FILES, label, values_with_limits, with_dims
 from lube.statistics.folding import PHASES
 from lube.study.study import Study
 from lube.types import Datasets
+from lube.units import with_unit
 
 log = logging.getLogger(__name__)
 
@@ -109,7 +110,7 @@ def measured_experiment(manifest: Manifest, study: Study) -> xr.Dataset:
     -------
     xarray.Dataset
         The ``experiment`` file of `lube.schema`. Its attribute ``refused`` has a line for each
-        record that cannot be used, ``remarks`` one for each that was corrected.
+        record that cannot be used, ``remarks`` one for each that was corrected or may be mistaken.
 
     Raises
     ------
@@ -139,6 +140,12 @@ def _row_of_entry(entry, study, remarks):
         remarks.append(
             f"{name}: its speed is stated as {conditions.speed:.6g} rpm, but it repeats itself at "
             f"{row['speed']:.6g} rpm, which is used instead"
+        )
+    at = study.experiment.thresholds.index(study.experiment.threshold)
+    if recording.quantity == "voltage" and row["contact_share"][at] == 1.0:
+        remarks.append(
+            f"{name}: reads as contact all the time, which it also does if its bias voltage is "
+            f"less than rig.bias_voltage, {with_unit(study.rig.bias_voltage, 'V')}"
         )
     return row | {"record": name}
 

@@ -363,6 +363,15 @@ def test_a_reversed_voltage_is_refused_and_not_counted_as_contact(measured, tmp_
     assert at_100_ohm(here)["contact_share"] == 0.25 and here.refused == ""
 
 
+def test_a_record_below_another_bias_voltage_reads_as_contact_with_a_remark(measured, tmp_path):
+    written(tmp_path / "volts.csv", np.full(1000, 0.015), head="U [V]")
+    here = measured("volts.csv,800,100,40")
+    assert at_100_ohm(here)["contact_share"] == 1.0
+    assert "volts.csv" in here.remarks and "less than rig.bias_voltage, 50 mV" in here.remarks
+    written(tmp_path / "volts.csv", np.where(np.arange(1000) % 2, 0.015, 0.05), head="U [V]")
+    assert measured("volts.csv,800,100,40").remarks == ""
+
+
 def test_no_record_at_all_is_an_error(measured):
     with pytest.raises(DataError, match=r"no record can be used, .*; the first: .*broken.csv"):
         measured("broken.csv,800,100,40")
