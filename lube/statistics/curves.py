@@ -394,7 +394,9 @@ def fit_factor(
     variance = np.einsum("fi,ij,fj->f", errors, covariance, errors, optimize=False)
     variance += np.sum((weights * noise) ** 2, axis=1)
     score = np.sum(weights * (shares - model), axis=1)
-    misfit, limit = score / np.sqrt(variance), quantile(realisations)
+    # Records where contact is certain tell nothing: both are 0.
+    misfit = np.divide(score, np.sqrt(variance), out=np.zeros_like(score), where=variance > 0.0)
+    limit = quantile(realisations)
     likeliest = np.argmax(scipy.integrate.cumulative_trapezoid(score, log_factors, initial=0.0))
     # From the factor where the score becomes positive, it falls to its zero at the likeliest one.
     # At smaller factors, with films so thin that segments merge, it may have another zero, below
@@ -403,7 +405,7 @@ def fit_factor(
     first = dip + np.argmax(score[dip : likeliest + 1] >= 0.0)
     log_factors, falling = log_factors[first:], np.minimum.accumulate(misfit[first:])
     first, last = log_factors[[0, -1]]
-    factor = np.interp(0.0, -falling, log_factors, left=np.nan, right=np.nan)
+    factor = np.interp(0.0, -falling, log_factors, left=np.nan) if falling[-1] < 0.0 else np.nan
     lower = np.interp(-limit, -falling, log_factors, left=-np.inf, right=last)
     upper = np.interp(limit, -falling, log_factors, left=first, right=np.inf)
     return np.exp(factor), np.exp(lower), np.exp(upper)

@@ -198,6 +198,11 @@ def test_a_factor_beyond_the_levels_or_without_records_is_nan():
     assert np.isnan(found) and lower == 0.0 and upper == pytest.approx(0.25)
     found, lower, upper = fitted(np.zeros(OFFSETS.size), 0.1, np.eye(OFFSETS.size))
     assert np.isnan(found) and 0.0 <= lower < upper == np.inf
+    logits, two = np.array([40.0, 45.0]) - LOG_FACTORS[:, None], np.full(2, 1e3)
+    for noise in (0.0, 0.01):  # contact is certain with any factor
+        known = two, np.eye(2), 64, np.full(2, noise)
+        found, lower, upper = fit_factor(LOG_FACTORS, logits, np.ones(2), *known)
+        assert np.isnan(found) and (lower, upper) == (0.0, np.inf)
     none = np.empty(0)
     nothing = fit_factor(LOG_FACTORS, LOGITS[:, :0], none, none, np.empty((0, 0)), 8, none)
     assert np.isnan(nothing[0]) and nothing[1:] == (0.0, np.inf)
