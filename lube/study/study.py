@@ -406,7 +406,8 @@ class Study(StrictModel):
             Plain values, fit for JSON. They are parameters of the stage's Snakemake rules: a
             change reruns the stages that use it.
         """
-        return _plain(self, STAGES[stage].values)
+        values = STAGES[stage].values.items()
+        return {name: to_jsonable_python(attrgetter(what)(self)) for name, what in values}
 
     def origin(self, stage: str) -> dict:
         """Return all values that determine a stage's result, including those of its forerunners.
@@ -532,13 +533,6 @@ class Study(StrictModel):
                 )
             found[variable] = given[index]
         return found
-
-
-def _plain(study, values):
-    """Values of a study at dotted attributes, as plain data."""
-    if isinstance(values, dict):
-        return {name: _plain(study, value) for name, value in values.items()}
-    return to_jsonable_python(attrgetter(values)(study))
 
 
 def load_study(
