@@ -336,8 +336,7 @@ class Study(StrictModel):
             With the contact width, and what is needed.
         """
         half_width = self.rollers.contact_half_width(force)
-        what = f"{key}: the contact at {force:g} N"
-        self.line_spec.check_width(2.0 * half_width, what)
+        self.line_spec.check_width(2.0 * half_width, f"{key}: the contact at {force:g} N")
         meniscus = self.inlet_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:
             raise StudyError(
