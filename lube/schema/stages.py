@@ -9,7 +9,7 @@ to ``variables.csv``, and the function `make` in ``lube/stages/name.py``.
 """
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -24,24 +24,24 @@ class Stage:
         Name of the stage, and of its rule, module, schema table and file (``film.nc``).
     says : str
         What it makes, in a few words, for the messages of Snakemake.
-    inputs : tuple of str
+    inputs : sequence of str
         Stages whose files it reads, as far as the study has them.
     inputs_with : dict
         Further stages whose files it reads, each with the attribute of the study that asks for it.
     values : dict
         Values of the study that it uses: from the name of each value in the file's attribute
         ``config`` to the dotted attribute of `lube.study.study.Study`.
-    same_values : tuple of str
+    same_values : sequence of str
         Stages whose values it uses too, without reading their files.
     target : str
         Target of Snakemake that makes the file: ``all``, or one that is made on request only,
         such as ``areal_contact``. Files of ``benchmark`` are not results of the study.
-    only_with : tuple of str
+    only_with : sequence of str
         Attributes of the study without which there is no such file.
     written : str
         Attribute of `lube.pipeline.study_files.StudyFiles` that lists those files, written by
         people, that the stage reads; none by default.
-    parameters : tuple of str
+    parameters : sequence of str
         Further attributes of the study that the file depends on; its ``config`` leaves them out.
     priority : int
         Jobs of a higher priority are started first.
@@ -54,14 +54,14 @@ class Stage:
 
     name: str
     says: str
-    inputs: tuple[str, ...] = ()
+    inputs: Sequence[str] = ()
     inputs_with: dict[str, str] = field(default_factory=dict)
     values: dict[str, str] = field(default_factory=dict)
-    same_values: tuple[str, ...] = ()
+    same_values: Sequence[str] = ()
     target: str = "all"
-    only_with: tuple[str, ...] = ()
+    only_with: Sequence[str] = ()
     written: str = ""
-    parameters: tuple[str, ...] = ()
+    parameters: Sequence[str] = ()
     priority: int = 0
     parallel: bool | str = False
     in_batches: str = ""
@@ -77,12 +77,7 @@ class Stage:
         return f"{self.name.replace('_', ' ').capitalize()}: {self.says}"
 
 
-_GROUPS = {
-    "LINES": ("seed", "lines=line_spec"),
-    "LAYER": ("rollers.reduced_modulus", "boundary_layer"),
-    "CONTACT": ("LAYER", "operating_grid.slide_to_roll_ratio", "roughness_deformation"),
-}
-"""Values that several stages use."""
+_TABLES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
 def _named(values):
@@ -90,40 +85,30 @@ def _named(values):
     found = {}
     for value in values:
         name, _, attribute = value.rpartition("=")
-        if value in _GROUPS:
-            found |= _named(_GROUPS[value])
+        if value in _TABLES["groups"]:
+            found |= _named(_TABLES["groups"][value])
         else:
             found[name or attribute.rpartition(".")[2]] = attribute
     return found
 
 
-def _stage(name, row):
-    lists = {key: tuple(words) for key, words in row.items() if isinstance(words, list)}
-    return Stage(name, **row | lists | {"values": _named(row.get("values", ()))})
-
-
-_ROWS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-STAGES = {name: _stage(name, row) for name, row in _ROWS.items()}
+STAGES = {
+    name: Stage(name, **row | {"values": _named(row.get("values", ()))})
+    for name, row in _TABLES["stages"].items()
+}
 """The registry: from name to `Stage`, each after those it depends on."""
+
+CONDITIONS: dict[str, str] = _TABLES["conditions"]
+"""What a study needs for the stages that are `only_with` it, in words."""
+
+TARGETS: dict[str, str] = _TABLES["targets"]
+"""The targets of Snakemake that make files on request, each with a sentence for its list."""
 
 DATASETS = tuple(row.name for row in STAGES.values() if row.target == "all")
 """The results of a study, one file each; a study may lack some of them (`only_with`)."""
 
 ON_REQUEST = {row.name: row.target for row in STAGES.values() if row.target != "all"}
 """Files that are made on request only, each with the target of Snakemake that makes it."""
-
-TARGETS = {
-    "areal_contact": "Contact of the surface that the lines stand for.",
-    "patch_contact": "Squares of the isotropic surface pressed against a flat.",
-    "computed": "Computed films, and contact under them.",
-    "rough_passage": "Passage of rough lines, by the transient Reynolds equation.",
-    "sensitivity": "What the probability of contact rests on.",
-    "electrical": "What electrical meters read of the contact.",
-    "measurement_plan": "What to measure next, by the sensitivity study, which is made first.",
-    "verification": "The study's methods against theory, other methods and print.",
-    "benchmark": "Measured times and coverage of intervals.",
-}
-"""The targets of Snakemake that make files on request, each with a sentence for its list."""
 
 
 def forerunners(stage: str, asks: Callable[[str], bool] = lambda _: True) -> tuple[str, ...]:
