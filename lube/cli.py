@@ -101,14 +101,10 @@ def _add_new(commands):
 
 
 def _add_run(commands):
-    run = _add(
-        commands,
-        _run,
-        "run a study: snakemake, from any folder",
-        usage="lube run [STUDY] [targets and options of snakemake]",
-        add_help=False,
-        prefix_chars="\0",  # all options are Snakemake's
-    )
+    usage = "lube run [STUDY] [targets and options of snakemake]"
+    # All options are Snakemake's.
+    options = {"usage": usage, "add_help": False, "prefix_chars": "\0"}
+    run = _add(commands, _run, "run a study: snakemake, from any folder", **options)
     run.add_argument("arguments", nargs=argparse.REMAINDER)
 
 

@@ -85,8 +85,7 @@ def _person(crate, number, creator):
         properties = {"@type": "Organization", "name": creator.affiliation}
         # Named after itself, so that creators of one institution share one entity.
         name = f"#institution-{quote(creator.affiliation, safe='')}"
-        institution = ContextEntity(crate, name, properties=properties)
-        person["affiliation"] = crate.add(institution)
+        person["affiliation"] = crate.add(ContextEntity(crate, name, properties=properties))
     return person
 
 

@@ -49,7 +49,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     counts = {name: len(levels) for name, levels in study.operating_grid}
     counts["lubricant"] = len(study.lubricants)
     points = math.prod(counts.values())
-    factors = [_many(number, name) for name, number in counts.items() if number > 1]
+    factors = [count(number, spoken(name)) for name, number in counts.items() if number > 1]
     formulas, realisations = len(study.film_formulas), study.realisations
     more = count(formulas, "film formula"), count(realisations, "realisation")
     runs = points * formulas * realisations
@@ -140,11 +140,6 @@ def _expected_run(study, points):
     minutes = max(1, round(seconds / 60.0 / cores))
     time = f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate"
     return f"{time}; up to {0.4 + size:.1f} GB for each job"
-
-
-def _many(number, name):
-    """``5 forces``, by the name of their dimension."""
-    return count(number, name.replace("slide_to_roll", "slide-to-roll").replace("_", " "))
 
 
 def _records(study):

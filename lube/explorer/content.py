@@ -73,7 +73,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``conducts``: whether contact has a resistance;
         - ``traces``: the traces of lines and of surfaces, each with the indices of its levels.
     """
-    film, tail = datasets["film"], datasets["tail"]
+    film, tail, uncertain = map(datasets.get, ("film", "tail", "sensitivity"))
     levels = {name: tail[name].values.tolist() for name in (*CHOICES, MODEL) if name in tail.dims}
     traces = _traces(datasets, levels)
     marks = {"deformed": _deformed(film, tail), "rubbing": rubbing(film)}
@@ -97,9 +97,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
             name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
             for name, where in marks.items()
         },
-        "factors": datasets["sensitivity"]["factor"].values.tolist()
-        if "sensitivity" in datasets
-        else [],
+        "factors": [] if uncertain is None else uncertain["factor"].values.tolist(),
         "sampled": not tail.attrs["remarks"],
         "regimes": film["regime"].attrs["flag_meanings"].split(),
         "validity": {

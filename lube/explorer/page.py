@@ -52,8 +52,7 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
         As from `lube.pipeline.stamps.stamp`.
     """
     content = page_content(datasets) | {"band": band}
-    start = content["traces"][0]["at"]
-    controls = _controls(content["levels"], start)
+    controls = _controls(content["levels"], content["traces"][0]["at"])
     sources = {
         name: models.ColumnDataSource({column: [] for column in columns}, name=name)
         for name, columns in COLUMNS.items()
@@ -97,8 +96,7 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
 def _controls(levels, start):
     """Make a control for each choice with several levels, and one for the abscissa."""
     controls = {}
-    css = (_TEMPLATES / "controls.css").read_text(encoding="utf-8")
-    sheet = models.InlineStyleSheet(css=css)
+    sheet = models.InlineStyleSheet(css=(_TEMPLATES / "controls.css").read_text(encoding="utf-8"))
     common = {"stylesheets": [sheet], "sizing_mode": "stretch_width", "margin": (4, 0, 8, 0)}
     for name, level in levels.items():
         names = level["names"]

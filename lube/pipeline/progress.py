@@ -122,5 +122,4 @@ class LogHandler(LogHandlerBase):
         if record.jobid not in self._failed:  # Snakemake repeats it at the end
             self._failed.add(record.jobid)
             job = self._messages.get(record.jobid, record.rule_name)
-            text = f"FAILED {job}: {reason_of_failure(record.log)}"
-            self._print(text, "bold red")
+            self._print(f"FAILED {job}: {reason_of_failure(record.log)}", "bold red")

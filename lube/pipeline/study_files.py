@@ -10,7 +10,7 @@ from pathlib import Path
 
 from lube.errors import LubeError, located
 from lube.pipeline.figure_list import Figure, made_by
-from lube.schema import STAGES
+from lube.schema import CONDITIONS, STAGES
 from lube.study.resolve import study_files
 from lube.study.study import Study
 from lube.study.uncertainty import SAMPLE_BATCHES, check_uncertainty
@@ -71,26 +71,6 @@ def products(figure: str) -> list[str]:
 def origin(figure: str) -> str:
     """Path of the file that states the origin of a figure, below the same folder."""
     return f"figures/{figure}.json"
-
-
-_NEEDED = {
-    "topographies": "a measured topography of a roller",
-    "line_spec.follows_rolling": "ridges that do not run along rolling",
-    "line_spec.is_gaussian": "Gaussian roughness lines",
-    "line_spec.has_surface": "lines that stand for surfaces",
-    "line_spec.is_isotropic": "isotropic surfaces",
-    "conducts": "rollers that conduct, a `resistivity` that is not `insulator`",
-    "line_spec.is_drawn": "lines that are drawn from a spectrum",
-    "gap.is_on_surfaces": "`roughness_deformation: none` or `computed`",
-    "has_records": "measured records, or a simulated rig with surfaces (`rig.contact_model`)",
-    "compares_surfaces": "`contact_model: surface` and records, measured or by a rig with surfaces",
-    "compares_lines_only": "records compared with lines alone; `gauge.nc` has films by surfaces",
-    "is_uncertain": "a section `uncertainty` of what the probability depends on",
-    "answers_samples": "`roughness_deformation: computed`, or as a choice in `uncertainty`",
-    "is_sampled": "Gaussian roughness lines that no formula flattens",
-    "gap.is_plain": "`film_shape: flat` and `roughness_deformation: none`",
-}
-"""What a study needs for the stages that are `only_with` it, in words."""
 
 
 class StudyFiles:
@@ -240,7 +220,7 @@ class StudyFiles:
             of_target = [name for name, row in STAGES.items() if row.target == target]
             lacking = next(filter(None, map(self.study.lacks, asked)), ())
             if lacking and not any(map(self.study.has, of_target)):  # else it makes another file
-                needed = " and ".join(_NEEDED[name] for name in lacking)
+                needed = " and ".join(CONDITIONS[name] for name in lacking)
                 raise LubeError(f"{self.path}: got the target {target}, need {needed}")
             made = filter(self.study.has, {*asked}.union(*map(self.study.forerunners, asked)))
             if any("is_uncertain" in STAGES[stage].only_with for stage in made):

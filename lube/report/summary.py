@@ -11,7 +11,7 @@ import xarray as xr
 from lube.grid import model_limits
 from lube.grid.operating_points import by_contact_model
 from lube.report.pages import render
-from lube.schema import LIMITS, MEAN_LIMITS, values_with_limits
+from lube.schema import LIMITS, MEAN_LIMITS, REGIMES, values_with_limits
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
 from lube.study.study import Study
@@ -128,7 +128,6 @@ def _film(film, first, shortest):
     thickness, ratio = (film[name].sel(first) for name in ("film_thickness", "lambda_ratio"))
     half = film["contact_half_width"]
     width = [2.0 * half.min().item(), 2.0 * half.max().item()]
-    regimes = film["regime"].attrs["flag_meanings"].split()
     invalid = ~film["in_validity_range"].astype(bool)
     outside = invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict()
     starved = film.sel(first).get("starvation_factor")
@@ -140,7 +139,7 @@ def _film(film, first, shortest):
         "waves": [one / shortest for one in width],
         "regimes": {
             name.replace("_", " and "): points
-            for flag, name in enumerate(regimes)
+            for flag, name in enumerate(REGIMES)
             if (points := int((film["regime"] == flag).sum()))
         },
         "points": film["regime"].size,

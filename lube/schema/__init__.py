@@ -9,7 +9,7 @@ not fit its kind, before it is saved and when it is read.
 """
 
 from lube.schema.labels import check, label
-from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, TARGETS, forerunners
+from lube.schema.stages import CONDITIONS, DATASETS, ON_REQUEST, STAGES, TARGETS, forerunners
 from lube.schema.tables import (
     AT_RECORDS,
     ATTRIBUTES,

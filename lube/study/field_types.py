@@ -159,8 +159,7 @@ def quantity(units: str | None, **limits: float) -> BeforeValidator:
         Metadata of an annotated float.
     """
     form, kind = ("quantity", f"quantity in {units}") if units else ("number", "number")
-    schema = _schema(form, kind, units, limits)
-    return read_by(lambda value: _number(value, units, limits), schema)
+    return read_by(lambda value: _number(value, units, limits), _schema(form, kind, units, limits))
 
 
 def checked_text(check: Callable[[str], object], kind: str) -> BeforeValidator:

@@ -250,8 +250,7 @@ class LubricantRecord(StrictModel):
 
     def density_at(self, kelvin: Values) -> Values:
         """Density, kg/m3, at a temperature in K."""
-        density = self.density
-        return linear_density(kelvin, density.at_15_degC, density.thermal_coefficient)
+        return linear_density(kelvin, self.density.at_15_degC, self.density.thermal_coefficient)
 
     def kinematic_viscosity(self, point: ViscosityPoint) -> float:
         """Kinematic viscosity of a point, m2/s: as given, or dynamic viscosity over density."""

@@ -17,6 +17,11 @@ class OperatingGrid(StrictModel):
     slide_to_roll_ratio: Annotated[tuple[float, ...], levels(None, least=-2.0, most=2.0)]
     """(v1 - v2) / mean surface speed; 0 is pure rolling"""
 
+    @property
+    def conditions(self) -> dict[str, tuple[float, ...]]:
+        """The levels that records are assigned to: all but those of the slide-to-roll ratio."""
+        return self.model_dump(exclude={"slide_to_roll_ratio"})
+
 
 class TracePoint(StrictModel):
     """An operating point whose contact is kept at every time step of a revolution."""

@@ -202,8 +202,7 @@ def with_paths(content: Any, moved: Callable[[str], str], keys: tuple = ()) -> A
     """
     match content:
         case dict():
-            parts = content.items()
-            return {key: with_paths(part, moved, (*keys, key)) for key, part in parts}
+            return {key: with_paths(part, moved, (*keys, key)) for key, part in content.items()}
         case list() if keys == ("lubricants",):
             return [moved(name) if is_record_path(name) else name for name in content]
         case str() if keys in _PATHS:

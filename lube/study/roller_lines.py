@@ -85,11 +85,8 @@ def _rough_line(rollers, roughness, name, rms, spacing, width):
     points = round(roughness.points * roller.radius / rollers.first.radius)
     if roller.topography and roller.topography.is_line:
         longest = roller.topography.long_cutoff or points * spacing
-    roll_off = own.roll_off_wavelength
-    if roller.topography or roll_off is None:
-        roll_off = longest
-    _check_band(longest, shortest, roughness.points, spacing, key)
-    _check_roll_off(longest, shortest, roll_off, key)
+    roll_off = (None if roller.topography else own.roll_off_wavelength) or longest
+    _check_band(longest, shortest, roll_off, roughness.points, spacing, key)
     _check_distribution(own, key)
     if roller.topography:
         with located(f"rollers.{name}.topography", StudyError):
@@ -205,7 +202,7 @@ def _length(value):
     return with_unit(value, "m", 3)
 
 
-def _check_band(longest, shortest, points, spacing, key):
+def _check_band(longest, shortest, roll_off, points, spacing, key):
     if shortest < 2.0 * spacing * (1.0 - 1e-9):
         raise StudyError(
             f"roughness.points: got {points}, too coarse a grid: its spacing is "
@@ -217,9 +214,6 @@ def _check_band(longest, shortest, points, spacing, key):
             f"{key('shortest_wavelength')}: got {_length(shortest)}, need less than the longest, "
             f"{_length(longest)}; if it is given in points, need {least} roughness.points or more"
         )
-
-
-def _check_roll_off(longest, shortest, roll_off, key):
     if not shortest * (1.0 - 1e-9) <= roll_off <= longest * (1.0 + 1e-9):
         raise StudyError(
             f"{key('roll_off_wavelength')}: got {_length(roll_off)}, need one from the shortest to "

@@ -5,7 +5,7 @@ Written in YAML with units, kept in SI. A notebook makes them in the same way:
 """
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field, StrictInt, model_validator
@@ -177,6 +177,12 @@ class RollerPair(StrictModel):
     """rms height of both rough surfaces together, in place of one for each roller; each roller
     then has this value / 2^0.5
     """
+
+    @property
+    def geometry(self) -> dict[str, Any]:
+        """Length, radii and elastic constants, as plain data."""
+        names = {"radius", "young_modulus", "poisson_ratio"}
+        return self.model_dump(include={"length": True, "first": names, "second": names})
 
     @property
     def reduced_radius(self) -> float:

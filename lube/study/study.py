@@ -336,8 +336,7 @@ class Study(StrictModel):
             With the contact width, and what is needed.
         """
         half_width = self.rollers.contact_half_width(force)
-        what = f"{key}: the contact at {force:g} N"
-        self.line_spec.check_width(2.0 * half_width, what)
+        self.line_spec.check_width(2.0 * half_width, f"{key}: the contact at {force:g} N")
         meniscus = self.inlet_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:
             raise StudyError(
@@ -406,7 +405,8 @@ class Study(StrictModel):
             Plain values, fit for JSON. They are parameters of the stage's Snakemake rules: a
             change reruns the stages that use it.
         """
-        return _plain(self, STAGES[stage].values)
+        values = STAGES[stage].values.items()
+        return {name: to_jsonable_python(attrgetter(what)(self)) for name, what in values}
 
     def origin(self, stage: str) -> dict:
         """Return all values that determine a stage's result, including those of its forerunners.
@@ -532,13 +532,6 @@ class Study(StrictModel):
                 )
             found[variable] = given[index]
         return found
-
-
-def _plain(study, values):
-    """Values of a study at dotted attributes, as plain data."""
-    if isinstance(values, dict):
-        return {name: _plain(study, value) for name, value in values.items()}
-    return to_jsonable_python(attrgetter(values)(study))
 
 
 def load_study(

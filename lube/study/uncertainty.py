@@ -213,7 +213,7 @@ class Factor:
 
 
 def spoken(name: str) -> str:
-    """Write the name of a factor as in a text.
+    """Write the name of a factor, or of an operating variable, as in a text.
 
     Examples
     --------
@@ -221,6 +221,7 @@ def spoken(name: str) -> str:
     "Young's modulus"
     """
     words = name.replace("_", " ").replace("pressure viscosity", "pressure-viscosity")
+    words = words.replace("slide to roll", "slide-to-roll")
     return words.replace("hurst", "Hurst").replace("young", "Young's")
 
 
@@ -414,9 +415,8 @@ def _check_temperatures(study, ends):
 def _check_bands(study):
     """Refuse bands of wavelengths that the grid of lines or surfaces cannot have."""
     uncertain, spec = study.uncertainty, study.line_spec
-    exact = 0.0, 0.0
-    long = uncertain.longest_wavelength.ends if uncertain.longest_wavelength else exact
-    short = uncertain.shortest_wavelength.ends if uncertain.shortest_wavelength else exact
+    given = (uncertain.longest_wavelength, uncertain.shortest_wavelength)
+    long, short = (one.ends if one else (0.0, 0.0) for one in given)
     narrow = deviating_lines(spec, {"longest_wavelength": long[0], "shortest_wavelength": short[1]})
     wide = deviating_lines(spec, {"longest_wavelength": long[1], "shortest_wavelength": short[0]})
     shorter = min(line.longest_wavelength for line in narrow.lines)
