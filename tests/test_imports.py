@@ -105,13 +105,13 @@ def loaded_after(statement):
         ("import lube.cli", {"numpy"}),
         (
             "import lube.pipeline.command_line, lube.pipeline.study_files, lube.archive.inputs",
-            {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp", "ipykernel"},
+            {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp", "papermill"},
         ),
         (
             "import lube; lube.Oil, lube.contact_probability, lube.required_film, lube.duty",
-            {"snakemake", "ipykernel", "nbformat", "rocrate", "docutils", "markdown_it"},
+            {"snakemake", "papermill", "nbformat", "rocrate", "docutils", "markdown_it"},
         ),
-        ("import lube.pipeline.figure_list", {"xarray", "nbformat", "ipykernel", "docutils"}),
+        ("import lube.pipeline.figure_list", {"xarray", "nbformat", "papermill", "docutils"}),
     ],
 )
 def test_what_is_imported_at_every_start_is_light(statement, heavy):

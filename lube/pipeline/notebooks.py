@@ -1,7 +1,8 @@
 """Executing a figure's notebook, strictly and reproducibly.
 
-A missing parameters cell, and a parameter that the notebook does not know, are errors. The executed
-notebook holds no clock time, so that it is the same whenever it is made.
+Papermill by itself ignores a missing parameters cell and only warns of a parameter that the
+notebook does not know, and it writes clock times into its output. Here the first two are errors
+and the times are removed, so that an executed notebook is the same whenever it is made.
 """
 
 import logging
@@ -15,7 +16,10 @@ from pathlib import Path
 
 import matplotlib
 import nbformat
+import papermill
 from ipykernel.inprocess import InProcessKernelManager
+from papermill.engines import Engine, papermill_engines
+from papermill.exceptions import PapermillExecutionError
 from traitlets.config import Config
 
 from lube.errors import LubeError
@@ -24,12 +28,15 @@ from lube.pipeline.stamps import DRAWN_BY
 from lube.storage.files import written_whole
 
 log = logging.getLogger(__name__)
+# Papermill's own reading of the parameters, which warns of all but the simplest Python.
+logging.getLogger("papermill.translators").setLevel(logging.ERROR)
 
 _CELL_FAILED = 3
 """Exit code of the process if a cell fails; Python itself ends with 1 at any other error."""
 
-_RUNNING = "running"
-"""Key of the metadata of a notebook that is being executed: the number of the cell that runs."""
+_INJECTED = "injected-parameters"
+_ADDED = {_INJECTED, "papermill-error-cell-tag"}
+"""Tags of the cells that papermill adds."""
 
 # Parts of IPython's tracebacks.
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
@@ -103,7 +110,7 @@ def _execute_apart(*arguments):
 
 
 def _execute(notebook, output, parameters, drawn_by, code):
-    """Execute a notebook in this process; what has been executed is written before each cell."""
+    """Execute a notebook with papermill; its output is written even if a cell fails."""
     os.environ[DRAWN_BY] = drawn_by
     # Jupyter's debugger, not used here, would print a warning.
     os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"
@@ -111,39 +118,42 @@ def _execute(notebook, output, parameters, drawn_by, code):
         for name in [name for name in sys.modules if name.split(".")[0] == "lube"]:
             del sys.modules[name]
         sys.path.insert(0, str(code))
-    executed = nbformat.v4.upgrade(nbformat.read(notebook, as_version=4))
-    client, executed.metadata.language_info = _kernel()
-    given = "\n".join(f"{name} = {value!r}" for name, value in parameters.items())
-    for cell in executed.cells:
-        if cell.cell_type == "code":
-            cell.outputs, cell.execution_count = [], None
-    for number, cell in enumerate(executed.cells, start=1):
-        executed.metadata[_RUNNING] = number
-        nbformat.write(executed, output)
-        if cell.cell_type == "code" and _run(cell, client) == "error":
-            break
-        if given and "parameters" in cell.metadata.get("tags", ()):
-            _run(nbformat.v4.new_code_cell(given), client)
-    nbformat.write(executed, output)
-    if _errors(executed):
-        raise SystemExit(_CELL_FAILED)
+    options = {"kernel_name": "python3", "language": "python", "progress_bar": False}
+    try:
+        papermill.execute_notebook(notebook, output, parameters, _ENGINE, **options)
+    except PapermillExecutionError:
+        raise SystemExit(_CELL_FAILED) from None
 
 
-def _kernel():
-    """Start a kernel in this process; return its client, and the metadata on its language.
+class _InProcess(Engine):
+    """Engine of papermill that executes the cells in this process.
 
-    A kernel in a second process takes longer to start than most figures take to draw.
+    Papermill's own engine starts a second process, which takes longer than drawing most figures.
     """
-    # Nothing is added to the user's history of IPython.
-    manager = InProcessKernelManager(config=Config({"HistoryManager": {"enabled": False}}))
-    manager.start_kernel()
-    # Pictures appear below the cells, in Matplotlib's defaults, not in the user's own style.
-    manager.kernel.shell.enable_matplotlib("inline")
-    matplotlib.pyplot.close("all")  # figures of the process that this one was forked from
-    matplotlib.rcdefaults()
-    client = manager.client()
-    client.start_channels()
-    return client, manager.kernel.language_info
+
+    @classmethod
+    def execute_managed_notebook(cls, nb_man, kernel_name, **options):
+        # Nothing is added to the user's history of IPython.
+        manager = InProcessKernelManager(config=Config({"HistoryManager": {"enabled": False}}))
+        manager.start_kernel()
+        # Pictures appear below the cells, in Matplotlib's defaults, not in the user's own style.
+        manager.kernel.shell.enable_matplotlib("inline")
+        matplotlib.pyplot.close("all")  # figures of the process that this one was forked from
+        matplotlib.rcdefaults()
+        client = manager.client()
+        client.start_channels()
+        nb_man.nb.metadata.language_info = manager.kernel.language_info
+        for cell in nb_man.nb.cells:
+            nb_man.cell_start(cell)
+            failed = cell.cell_type == "code" and _run(cell, client) == "error"
+            if failed:
+                nb_man.cell_exception(cell)
+            nb_man.cell_complete(cell)
+            if failed:
+                break
+
+
+papermill_engines.register(_ENGINE := "in-process", _InProcess)
 
 
 def _run(cell, client):
@@ -167,26 +177,19 @@ def _add_output(cell, output):
         cell.outputs.append(output)
 
 
-def _errors(executed):
-    """List the errors below the cells, each with the number of its cell.
-
-    Cells are counted from 1, text included, as a reader of the notebook counts.
-    """
-    found = []
-    for number, cell in enumerate(executed.cells, start=1):
-        found += [(number, one) for one in cell.get("outputs", ()) if one.output_type == "error"]
-    return found
-
-
 def _failure(executed, exit_code):
     """Say in one line which cell fails, where and why; log the full traceback."""
+    cells = [cell for cell in executed.cells if _ADDED.isdisjoint(_tags(cell))]
+    # Counted from 1, text included, as a reader of the notebook counts.
+    started = [n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time]
     if exit_code != _CELL_FAILED:
-        number = executed.metadata[_RUNNING]
-        return f"its kernel was killed in cell {number}, perhaps because memory ran out"
+        return f"its kernel was killed in cell {started[-1]}, perhaps because memory ran out"
+    outputs = [(n, one) for n, cell in enumerate(cells, 1) for one in cell.get("outputs", ())]
+    errors = [(n, one) for n, one in outputs if one.output_type == "error"]
     # The error is not always in the cell that ran last: a cell may show an error and go on.
-    number, error = _errors(executed)[-1]
+    number, error = errors[-1]
     traceback = _COLOUR.sub("", "\n".join(error.traceback))
-    for n, cell in enumerate(executed.cells, 1):
+    for n, cell in enumerate(cells, 1):
         traceback = traceback.replace(f"Cell In[{cell.get('execution_count')}]", f"Cell {n}")
     log.debug("%s", traceback)
     # The first frame of the error itself, after the frames of the errors that caused it.
@@ -195,16 +198,22 @@ def _failure(executed, exit_code):
     return f"cell {number} fails{where}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
 
 
+def _tags(cell):
+    return cell.metadata.get("tags", [])
+
+
 def _save(executed, path):
     """Write an executed notebook, the same bytes each time.
 
-    It does not hold this run's paths: opened and run by hand, it shows the study in whose folder it
-    lies, and writes nothing.
+    Papermill's clock times and random cell names are removed, and so is the cell with this run's
+    paths: without it the copy, opened and run by hand, shows the study in whose folder it lies, and
+    writes nothing.
     """
-    del executed.metadata[_RUNNING]
+    executed.metadata.pop("papermill", None)
+    executed.cells = [cell for cell in executed.cells if _INJECTED not in _tags(cell)]
     for number, cell in enumerate(executed.cells):
-        cell.metadata.pop("execution", None)  # clock times, from an editor
-        cell.metadata.setdefault("tags", [])
+        cell.metadata.pop("papermill", None)
+        cell.metadata.pop("execution", None)
         cell.id = f"cell-{number}"
     with written_whole(path) as part:
         nbformat.write(executed, part)
