@@ -212,10 +212,8 @@ class RecurringContacts:
         surface = rough_surface(spec)
         parts = surface.first_part, 1.0 - surface.first_part, 1.0
         edges = np.concatenate([[-2.0], 0.5 * (_LEVELS[1:] + _LEVELS[:-1]), [2.0]])
-        self._counts = []
-        for part in parts:
-            correlation = field(surface.variances * part, surface.points)
-            self._counts.append(np.histogram(correlation / surface.rms**2, edges)[0])
+        covariances = (field(surface.variances * part, surface.points) for part in parts)
+        self._counts = [np.histogram(each / surface.rms**2, edges)[0] for each in covariances]
 
     def at(self, film: float) -> Array:
         """Find the fraction for either surface.

@@ -156,20 +156,14 @@ def surface_contact(
     for name in (f"{_RATIO}{end}" for end in LIMITS):
         found[name] = found[name] / (2.0 * half_width)
     looked_at = set(np.array(known, int)[wanted])
-    strips = [strip if point in looked_at else None for point, strip in enumerate(strips)]
-    points = thickness.copy(data=np.arange(thickness.size).reshape(thickness.shape))
-    width = _passage_width(pair, strips, slide_to_roll_ratio, points)
-    return found.assign(passage_width=width)
+    points = thickness.copy(data=np.arange(thickness.size).reshape(shape))
 
+    def passage_width(slip, point):
+        known = pair.spec, pair.length, slip
+        return strips[point].passage_width(*known) if point in looked_at else np.nan
 
-def _passage_width(pair, strips, slide_to_roll_ratio, points):
-    """Way of the rollers while a contact is in the strip, over numbers of strips and slip."""
-
-    def at(slip, point):
-        strip = strips[point]
-        return strip.passage_width(pair.spec, pair.length, slip) if strip else np.nan
-
-    return xr.apply_ufunc(np.vectorize(at, otypes=[float]), slide_to_roll_ratio, points)
+    widths = np.vectorize(passage_width, otypes=[float])
+    return found.assign(passage_width=xr.apply_ufunc(widths, slide_to_roll_ratio, points))
 
 
 def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:
@@ -218,12 +212,12 @@ def strip_films(pair: RoughPair, film: xr.Dataset) -> list[StripFilm | None]:
 def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
     """Variables of `surface_contact` at some strips, of which changed ones are sampled."""
     spec, length = pair.spec, pair.length
-    expected = np.full((2, len(strips)), np.nan)
+    found = {name: np.full(len(strips), np.nan) for name in _VARIABLES}
+    expected, broken = (found[name] for name in _EXPECTED)
     for point in np.flatnonzero(wanted):
-        expected[:, point] = strips[point].expected(spec, length, sharp[point])
-    certain = expected[0] > MANY
-    most = np.where(expected[0] > SEVERAL, STRIPS // 2, STRIPS)
-    found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
+        expected[point], broken[point] = strips[point].expected(spec, length, sharp[point])
+    certain = expected > MANY
+    most = np.where(expected > SEVERAL, STRIPS // 2, STRIPS)
 
     def sample(surface, some, is_certain):
         own = [changed[point] for point in some]
@@ -240,7 +234,6 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
         if holds.size:  # few strips do not tell how often the layer breaks
             sample(surface, holds, np.zeros(holds.size, bool))
     perimeters = np.multiply(spec.points, spec.spacing)
-    found["pair_deviation"] = np.full(len(strips), np.nan)
     recurring = RecurringContacts(spec) if perimeters[0] != perimeters[1] else None
     for point in np.flatnonzero(wanted):
         strip, share = strips[point], found["breakthrough_probability"][point]
@@ -249,7 +242,7 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
         if recurring is not None:
             alone = recurring.at(strip.levels(spec).min())
             found["pair_deviation"][point] *= turn_ratio(*contacts, alone, perimeters) ** 0.5
-    return dict(zip(_EXPECTED, expected, strict=True)) | found
+    return found
 
 
 def _on_alike_grids(spec, strips):
@@ -328,9 +321,9 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
         strip.breaking_curvatures(along, own) / step
         for strip, own in zip(strips, sharp, strict=True)
     ]
-    answered = [strip.answered(surface, *rows) for strip in strips]
+    answered = [strip.answered(surface) for strip in strips]
     with one_blas_thread():
-        answered = [oil and oil.with_covariances(threads) for oil in answered]
+        answered = [oil and oil.with_covariances(*rows, threads) for oil in answered]
     each = zip(films, limits, counts.tolist(), is_certain.tolist(), answered, strict=True)
     strips = [_SampledStrip(*one) for one in each]
     covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))

@@ -5,6 +5,7 @@ longest waves. Their joins cut few contacts. The rollers move by one period of t
 """
 
 import itertools
+from functools import partial
 
 import numpy as np
 import scipy.ndimage
@@ -144,17 +145,14 @@ def _added(surface, moving, answer):
     fields, shapes, ends = by_oil.fields[:-1, :-1], by_oil.shapes, [0]
     ends += np.cumsum([one.shapes.shape[1] for one in answer.answers]).tolist()
 
-    def of_one(begin, end):
-        def added(place):
-            nodes = (place >> answer.shift) + np.arange(shapes.shape[0])
-            part = fields[:, nodes % fields.shape[1], begin:end] * shapes[:, begin:end]
-            rough = np.sum(part, axis=-1)
-            rough = _finer(np.vstack([rough, rough[:1]]), answer.shift)
-            return _finer(rough.T, answer.shift).T
+    def added(begin, end, place):
+        nodes = (place >> answer.shift) + np.arange(shapes.shape[0])
+        part = fields[:, nodes % fields.shape[1], begin:end] * shapes[:, begin:end]
+        rough = np.sum(part, axis=-1)
+        rough = _finer(np.vstack([rough, rough[:1]]), answer.shift)
+        return _finer(rough.T, answer.shift).T
 
-        return added
-
-    return [of_one(*each) for each in itertools.pairwise(ends)]
+    return [partial(added, *each) for each in itertools.pairwise(ends)]
 
 
 def _finer(nodes, shift):

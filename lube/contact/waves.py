@@ -197,12 +197,10 @@ def answers_at(film: xr.Dataset, has_shape: bool, kind: type[Answer] = Answer) -
                     answers[roller] = kind.of(one, levels, half_width, importance)
         return answers
 
-    contact = (
-        film[name] for name in ("contact_half_width", "reduced_radius", "composite_rms_roughness")
-    )
+    contact = "contact_half_width", "reduced_radius", "composite_rms_roughness"
     core = {"input_core_dims": [["roller", *names], [], [], []], "output_core_dims": [["roller"]]}
     options = {"vectorize": True, "output_dtypes": [object]}
-    return xr.apply_ufunc(of_both, response, *contact, **core, **options)
+    return xr.apply_ufunc(of_both, response, *(film[name] for name in contact), **core, **options)
 
 
 def lifted(
