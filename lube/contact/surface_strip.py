@@ -168,8 +168,7 @@ def surface_contact(
 
 def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:
     """Mean curvature of an overlap above which its boundary layer breaks, 1/m."""
-    layer = pair.layer.critical_thickness, pair.layer.shear_strength
-    return 0.5 * breaking_curvature(film["reduced_modulus"].item(), *layer)
+    return 0.5 * breaking_curvature(film["reduced_modulus"].item(), pair.layer)
 
 
 def surface_seeds(seed: int, count: int) -> list:
@@ -203,10 +202,8 @@ def strip_films(pair: RoughPair, film: xr.Dataset) -> list[StripFilm | None]:
         return strips
     answers = xr.broadcast(answers_at(film, pair.gap.has_shape, SurfaceAnswer), thickness)[0]
     answers = answers.transpose(*thickness.dims, "roller").values.reshape(-1, 2)
-    return [
-        replace(strip, answers=tuple(both)) if strip and both[0] else None
-        for strip, both in zip(strips, answers, strict=True)
-    ]
+    each = zip(strips, answers, strict=True)
+    return [replace(one, answers=tuple(both)) if one and both[0] else None for one, both in each]
 
 
 def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
@@ -317,10 +314,8 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     reach, step = _reach(pair.spec, down), pair.spec.height_step
     rows = sum(reach), reach[1]
     films = [strip.films(along) / step for strip in strips]
-    limits = [
-        strip.breaking_curvatures(along, own) / step
-        for strip, own in zip(strips, sharp, strict=True)
-    ]
+    each = zip(strips, sharp, strict=True)
+    limits = [strip.breaking_curvatures(along, own) / step for strip, own in each]
     answered = [strip.answered(surface) for strip in strips]
     with one_blas_thread():
         answered = [oil and oil.with_covariances(*rows, threads) for oil in answered]
@@ -356,8 +351,7 @@ def _reach(spec, spacing):
     """Rows beyond which rows are independent, and over which contacts are followed."""
     longest = math.ceil(longest_waves(spec)[0] / spacing)
     # Ridges at an angle reach further along the rollers than a cut through one along the rollers.
-    lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
-    oblique = max(math.prod(extents(*lay)) / lay[0] for lay in lays)
+    oblique = max(math.prod(extents(line)) / line.lay_ratio for line in spec.lines)
     return longest, min(math.ceil(AROUND * oblique), longest)
 
 
@@ -395,16 +389,13 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
         # Strips begin at nodes.
         places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))
-        *each, contacts = touching_strips(
-            *(fields, tops, covariances, places, touching, film, strip.sharp, fading, around),
-            *(by_oil, surface.diagonal),
-        )
+        searched = around, by_oil, surface.diagonal
+        drawn = fields, tops, covariances, places, touching
+        *each, contacts = touching_strips(*drawn, film, strip.sharp, fading, *searched)
         first.append(weight * np.stack(each))
         if strip.is_certain:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
-            contacts = contacts_per_row(
-                fields, covariances, some, film, strip.sharp, around, by_oil, surface.diagonal
-            )
+            contacts = contacts_per_row(fields, covariances, some, film, strip.sharp, *searched)
         else:
             contacts = weight * contacts
         numbers.append(contacts)
