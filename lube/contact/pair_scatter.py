@@ -115,10 +115,8 @@ def persistent_part(probability: float, lags: Array, common: Array, recurring: A
         The part, by either surface.
     """
     groups = -np.log1p(-np.clip(probability, 1e-300, 1.0 - 1e-12))
-    alone, whole = (
-        np.trapezoid(np.expm1(groups * part * common), lags)
-        for part in (np.reshape(recurring, (-1, 1)), 1.0)
-    )
+    parts = np.reshape(recurring, (-1, 1)), 1.0
+    alone, whole = (np.trapezoid(np.expm1(groups * part * common), lags) for part in parts)
     return alone / whole
 
 

@@ -272,9 +272,8 @@ def curvature_moments(spec: LineSpecLike) -> Array | None:
     for roller, line in enumerate(spec.lines):
         # Curvatures along the lay and across it.
         part, square = line.lay_ratio**-2.0, wave_moments(spec, roller)[2]
-        ridges, both, across = np.array([3.0 * part**2, part, 3.0]) * (
-            square / (3.0 + 2.0 * part + 3.0 * part**2)
-        )
+        scale = square / (3.0 + 2.0 * part + 3.0 * part**2)
+        ridges, both, across = np.array([3.0 * part**2, part, 3.0]) * scale
         own = [ridges + across + 2.0 * both, ridges - across, ridges + across - 2.0 * both]
         mean, mixed, difference = 0.25 * np.array(own)
         cosine, sine = cosine_and_sine(line.lay_angle)

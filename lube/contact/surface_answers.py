@@ -3,7 +3,7 @@
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 import scipy
@@ -42,16 +42,14 @@ class SurfaceAnswer(Answer):
     coarsest: ClassVar[int] = COARSEST
 
     @classmethod
-    def of(
-        cls, response: Array, levels: Sequence[Array], half_width: float, importance: Array
-    ) -> "SurfaceAnswer":
+    def of(cls, response: Array, levels: list[Array], half_width: float, importance: Array) -> Self:
         """Expand a response of the film.
 
         Parameters
         ----------
         response : numpy.ndarray of complex, shape (a, w, n)
             The response.
-        levels : sequence of numpy.ndarray
+        levels : list of numpy.ndarray
             Angles from 0 to 90 degrees, shape (a,), wavelengths in m, falling, shape (w,), and
             positions over the half-width, rising, shape (n,).
         half_width : float
@@ -69,10 +67,8 @@ class SurfaceAnswer(Answer):
         last = max([1, *changed])
         finer = np.geomspace(wavelength[0], wavelength[last], FINER * last + 1)
         scaled = finer / half_width, wavelength / half_width
-        at_angles = [
-            at_wavelengths(*scaled, one, position, angle) - 1.0
-            for one, angle in zip(response, angles, strict=True)
-        ]
+        each = zip(response, angles, strict=True)
+        at_angles = [at_wavelengths(*scaled, one, position, angle) - 1.0 for one, angle in each]
         # As over the wavelengths, the phase outside the contact is that at the contact's edge.
         outside = 2j * np.pi * (position - np.clip(position, -1.0, 1.0)) / scaled[0][:, None]
         more = np.linspace(angles[0], angles[-1], FINER_ANGLES * (angles.size - 1) + 1)
@@ -175,8 +171,7 @@ class AnsweredStrip:
     """
 
     def __init__(self, answers: Pair, surface: Surface, columns: Array) -> None:
-        are_alike = answers[0] is answers[1]
-        self.answers = answers[:1] if are_alike else answers
+        self.answers = answers[:1] if answers[0] is answers[1] else answers
         self.shift = self.answers[0].shift(surface.spacing[1])
         self.points = tuple(number >> self.shift for number in surface.points)
         self._surface, self._columns = surface, np.arange(columns.size)

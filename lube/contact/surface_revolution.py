@@ -57,8 +57,7 @@ def revolution_contact(
     if not known:
         return np.full((len(strips), 1), np.nan, np.float32)
     wide = max(strip.width for strip in known.values())
-    multiple = 2**COARSEST if pair.gap.is_answered else 1
-    surface = rough_surface(spec, wide, multiple=multiple)
+    surface = rough_surface(spec, wide, multiple=2**COARSEST if pair.gap.is_answered else 1)
     sharp = mean_breaking_curvature(pair, film)
     with one_blas_thread():
         passages = {point: _Passage(strip, pair, surface, sharp) for point, strip in known.items()}
