@@ -223,8 +223,7 @@ class FilmGroups:
         load = np.pi / 8.0 * (film["contact_half_width"] / radius) ** 2
         speed = 0.5 * (load / film["moes_load"]) ** 2
         material = film["moes_material"] / (2.0 * speed) ** 0.25
-        known = "inlet_meniscus" in film
-        meniscus = (film["inlet_meniscus"] / radius).item() if known else None
+        meniscus = (film["inlet_meniscus"] / radius).item() if "inlet_meniscus" in film else None
         oil = film["dynamic_viscosity"], 2.0 * film["reduced_modulus"]
         return cls(load, speed, material, *oil, meniscus)
 
