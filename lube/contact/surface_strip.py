@@ -70,13 +70,10 @@ area."""
 AT_ONCE = 10
 """Operating points at which the oil answers that are sampled together, for which surfaces are drawn
 again: what the oil adds to the covariances takes 5 to 40 MB a point."""
-_NUMBERS = {
-    "geometric_contact_probability": "contacts",
-    "breakthrough_probability": "breakthroughs",
-}
+_COUNTS = {"geometric_contact_probability": "contacts", "breakthrough_probability": "breakthroughs"}
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
 _RATIO = "breakdown_ratio"
-_SAMPLED = [f"{name}{end}" for name in (*_NUMBERS, *_NUMBERS.values(), _RATIO) for end in LIMITS]
+_SAMPLED = [f"{name}{end}" for name in (*_COUNTS, *_COUNTS.values(), _RATIO) for end in LIMITS]
 _VARIABLES = (*_EXPECTED, *_SAMPLED, "pair_deviation")
 
 
@@ -323,14 +320,12 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     strips = [_SampledStrip(*one) for one in each]
     covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
 
-    def on_one_surface(of_one):
-        return _on_one_surface(of_one, surface, covariances, strips, reach)
-
+    on_one_surface = partial(_on_one_surface, surface, covariances, strips, reach)
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
     rows = max(int(pair.length / down), 1)
     results = {}
-    for which, (name, of_contacts) in enumerate(_NUMBERS.items()):
+    for which, (name, of_contacts) in enumerate(_COUNTS.items()):
         limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
         results |= values_with_limits(name, limits)
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
@@ -340,7 +335,7 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     for name in ("breakthroughs_upper", "breakthrough_probability_upper", f"{_RATIO}_upper"):
         of_contact = in_contact[2] if name == f"{_RATIO}_upper" else contacts
         results[name] = breakthrough_limit(results[name], of_contact, sampled)
-    geometric, breakthrough = _NUMBERS
+    geometric, breakthrough = _COUNTS
     for end in LIMITS:  # no layer breaks without contact, but both are known with an error
         most = results[f"{geometric}{end}"]
         results[f"{breakthrough}{end}"] = np.minimum(results[f"{breakthrough}{end}"], most)
@@ -355,7 +350,7 @@ def _reach(spec, spacing):
     return longest, min(math.ceil(AROUND * oblique), longest)
 
 
-def _on_one_surface(seeds, surface, covariances, strips, reach):
+def _on_one_surface(surface, covariances, strips, reach, seeds):
     """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 4)."""
     drawing, choosing = map(np.random.default_rng, seeds)
     *fields, waves = surface.draw(drawing)
