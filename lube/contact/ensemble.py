@@ -251,6 +251,5 @@ def with_limits(dataset: xr.Dataset, windows: xr.DataArray) -> xr.Dataset:
     for name in PROBABILITIES:
         shares = dataset[name]
         interval = probability_interval(shares.values, _at_each(windows, shares))
-        limits = values_with_limits(name, interval, shares.dims[1:], MEAN_LIMITS)
-        dataset = dataset.assign(limits)
+        dataset = dataset.assign(values_with_limits(name, interval, shares.dims[1:], MEAN_LIMITS))
     return dataset

@@ -115,10 +115,8 @@ def persistent_part(probability: float, lags: Array, common: Array, recurring: A
         The part, by either surface.
     """
     groups = -np.log1p(-np.clip(probability, 1e-300, 1.0 - 1e-12))
-    alone, whole = (
-        np.trapezoid(np.expm1(groups * part * common), lags)
-        for part in (np.reshape(recurring, (-1, 1)), 1.0)
-    )
+    parts = np.reshape(recurring, (-1, 1)), 1.0
+    alone, whole = (np.trapezoid(np.expm1(groups * part * common), lags) for part in parts)
     return alone / whole
 
 
@@ -212,10 +210,8 @@ class RecurringContacts:
         surface = rough_surface(spec)
         parts = surface.first_part, 1.0 - surface.first_part, 1.0
         edges = np.concatenate([[-2.0], 0.5 * (_LEVELS[1:] + _LEVELS[:-1]), [2.0]])
-        self._counts = []
-        for part in parts:
-            correlation = field(surface.variances * part, surface.points)
-            self._counts.append(np.histogram(correlation / surface.rms**2, edges)[0])
+        covariances = (field(surface.variances * part, surface.points) for part in parts)
+        self._counts = [np.histogram(each / surface.rms**2, edges)[0] for each in covariances]
 
     def at(self, film: float) -> Array:
         """Find the fraction for either surface.

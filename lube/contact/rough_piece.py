@@ -43,12 +43,10 @@ class RoughPiece:
     @cached_property
     def middle_step(self) -> int:
         """Time step at which the two lines together are highest at the line of centres."""
-        at = [
-            np.floor(np.arange(self.pair[0].size) * ratio + 0.5).astype(int)
-            for ratio in speed_ratios(self.slide_to_roll_ratio)
-        ]
-        both = zip(self.pair, at, strict=True)
-        return int(np.argmax(sum(line[index % line.size] for line, index in both)))
+        steps = np.arange(self.pair[0].size)
+        both = zip(self.pair, speed_ratios(self.slide_to_roll_ratio), strict=True)
+        at = (line[np.floor(steps * ratio + 0.5).astype(int) % line.size] for line, ratio in both)
+        return int(np.argmax(sum(at)))
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -84,8 +82,7 @@ class RoughPiece:
     def steps(self, least: float, greatest: float) -> tuple[int, int]:
         """First time step, and number of steps, between two travels of the oil, half-widths."""
         by_step = self.grid.spacing / self.half_width / max(self.speeds)
-        first = self.middle_step + round(least / by_step)
-        return first, round((greatest - least) / by_step) + 1
+        return self.middle_step + round(least / by_step), round((greatest - least) / by_step) + 1
 
     def heights(self, position: Array, travel: Array, profile: FilmProfile | None = None) -> Array:
         """Heights of both lines together as they pass through the contact.

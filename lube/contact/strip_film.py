@@ -85,12 +85,11 @@ class StripFilm:
         """
         return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
 
-    def answered(self, surface: Surface, *rows: int) -> AnsweredStrip | None:
-        """Find what the oil adds to a surface, if rows before and after a height are looked at."""
+    def answered(self, surface: Surface) -> AnsweredStrip | None:
+        """Find what the oil adds to a surface."""
         if self.answers is None or not any(one.shapes.size for one in self.answers):
             return None
-        columns = self._columns(surface.spacing[1])
-        return AnsweredStrip(self.answers, surface, columns[0], columns.size, *rows)
+        return AnsweredStrip(self.answers, surface, self._columns(surface.spacing[1]))
 
     def contacts(
         self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0
@@ -153,11 +152,7 @@ class StripFilm:
         films, sharp = self.films(spacing), self.breaking_curvatures(spacing, sharp)
         moments, weights = surface_moments(spec), found.density
         if self.answers:
-            place = self._columns(spacing)
-            both = (
-                summit_moments(surface_waves(spec, roller), answer, place)
-                for roller, answer in enumerate(self.answers)
-            )
+            both = self._of_each(summit_moments, spec, self._columns(spacing))
             moments = excursions.SurfaceMoments(*sum(both), moments.curvature)
         elif self.has_edges:  # the same everywhere
             films, sharp, weights = films[:1], sharp[:1], weights[:1]
@@ -225,10 +220,12 @@ class StripFilm:
     def _moments_at(self, spec, position):
         if not self.answers:
             return height_moments(spec)
+        return np.stack(self._of_each(moments_in_gap, spec, position))
+
+    def _of_each(self, moments_of, spec, position):
+        """Moments of either surface in the gap."""
         each = enumerate(self.answers)
-        return np.stack(
-            [moments_in_gap(surface_waves(spec, one), answer, position) for one, answer in each]
-        )
+        return [moments_of(surface_waves(spec, one), answer, position) for one, answer in each]
 
     def _columns(self, spacing):
         return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
@@ -275,9 +272,8 @@ def curvature_moments(spec: LineSpecLike) -> Array | None:
     for roller, line in enumerate(spec.lines):
         # Curvatures along the lay and across it.
         part, square = line.lay_ratio**-2.0, wave_moments(spec, roller)[2]
-        ridges, both, across = np.array([3.0 * part**2, part, 3.0]) * (
-            square / (3.0 + 2.0 * part + 3.0 * part**2)
-        )
+        scale = square / (3.0 + 2.0 * part + 3.0 * part**2)
+        ridges, both, across = np.array([3.0 * part**2, part, 3.0]) * scale
         own = [ridges + across + 2.0 * both, ridges - across, ridges + across - 2.0 * both]
         mean, mixed, difference = 0.25 * np.array(own)
         cosine, sine = cosine_and_sine(line.lay_angle)

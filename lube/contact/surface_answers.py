@@ -3,7 +3,7 @@
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 import scipy
@@ -42,16 +42,14 @@ class SurfaceAnswer(Answer):
     coarsest: ClassVar[int] = COARSEST
 
     @classmethod
-    def of(
-        cls, response: Array, levels: Sequence[Array], half_width: float, importance: Array
-    ) -> "SurfaceAnswer":
+    def of(cls, response: Array, levels: list[Array], half_width: float, importance: Array) -> Self:
         """Expand a response of the film.
 
         Parameters
         ----------
         response : numpy.ndarray of complex, shape (a, w, n)
             The response.
-        levels : sequence of numpy.ndarray
+        levels : list of numpy.ndarray
             Angles from 0 to 90 degrees, shape (a,), wavelengths in m, falling, shape (w,), and
             positions over the half-width, rising, shape (n,).
         half_width : float
@@ -69,10 +67,8 @@ class SurfaceAnswer(Answer):
         last = max([1, *changed])
         finer = np.geomspace(wavelength[0], wavelength[last], FINER * last + 1)
         scaled = finer / half_width, wavelength / half_width
-        at_angles = [
-            at_wavelengths(*scaled, one, position, angle) - 1.0
-            for one, angle in zip(response, angles, strict=True)
-        ]
+        each = zip(response, angles, strict=True)
+        at_angles = [at_wavelengths(*scaled, one, position, angle) - 1.0 for one, angle in each]
         # As over the wavelengths, the phase outside the contact is that at the contact's edge.
         outside = 2j * np.pi * (position - np.clip(position, -1.0, 1.0)) / scaled[0][:, None]
         more = np.linspace(angles[0], angles[-1], FINER_ANGLES * (angles.size - 1) + 1)
@@ -96,9 +92,7 @@ class SurfaceAnswer(Answer):
         return filters((longest, angle))
 
 
-def moments_in_gap(
-    waves: tuple[Array, Array, Array], answer: SurfaceAnswer, position: Array
-) -> Array:
+def moments_in_gap(waves: Sequence[Array], answer: SurfaceAnswer, position: Array) -> Array:
     """Compute second moments of the heights of a surface in the gap, and of their changes.
 
     Parameters
@@ -131,9 +125,7 @@ def moments_in_gap(
     return moments(changed, kept, slopes) + moments(~changed, others, 0.0)
 
 
-def summit_moments(
-    waves: tuple[Array, Array, Array], answer: SurfaceAnswer, position: Array
-) -> Array:
+def summit_moments(waves: Sequence[Array], answer: SurfaceAnswer, position: Array) -> Array:
     """Compute how heights of a surface in the gap go with its curvatures as drawn.
 
     Parameters
@@ -164,12 +156,8 @@ class AnsweredStrip:
     surface : Surface
         The sum of both surfaces. The number of points along a side is a multiple of
         2^`COARSEST`.
-    begin : float
-        Position of the strip's first column, m from the line of centres.
-    columns : int
-        Columns of the strip.
-    before, after : int, optional
-        Rows before and after that of a height that are looked at.
+    columns : numpy.ndarray
+        Positions of the strip's columns, m from the line of centres.
 
     Attributes
     ----------
@@ -182,22 +170,13 @@ class AnsweredStrip:
         Nodes along the sides of the surface.
     """
 
-    def __init__(
-        self,
-        answers: Pair,
-        surface: Surface,
-        begin: float,
-        columns: int,
-        before: int = 0,
-        after: int = 0,
-    ) -> None:
-        are_alike = answers[0] is answers[1]
-        self.answers = answers[:1] if are_alike else answers
+    def __init__(self, answers: Pair, surface: Surface, columns: Array) -> None:
+        self.answers = answers[:1] if answers[0] is answers[1] else answers
         self.shift = self.answers[0].shift(surface.spacing[1])
         self.points = tuple(number >> self.shift for number in surface.points)
-        self._surface, self._columns = surface, np.arange(columns)
-        self._nodes = np.arange(((columns - 1) >> self.shift) + 2) << self.shift
-        position = begin + self._nodes * surface.spacing[1]
+        self._surface, self._columns = surface, np.arange(columns.size)
+        self._nodes = np.arange(((columns.size - 1) >> self.shift) + 2) << self.shift
+        position = columns[0] + self._nodes * surface.spacing[1]
         self._shapes = [one.at(position / one.half_width) for one in self.answers]
         # The waves that the oil changes: their places among those of the surface.
         coarser = zip(self.points, surface.coarse, strict=True)
@@ -212,30 +191,32 @@ class AnsweredStrip:
         waves = units[1] * self._along, units[0] * self._down
         filters = [one.filters_at(*waves) for one in self.answers]
         self._filters = [each.astype(np.complex64) for each in filters]
-        self._rows_of_nodes = np.arange(-before >> self.shift, (after >> self.shift) + 2)
-        self._covariances = np.zeros((2, 0, 0, 0), np.float32)
+        self._first, self._covariances = 0, np.zeros((2, 0, 0, 0), np.float32)
 
-    def with_covariances(self, threads: int | None = 1) -> "AnsweredStrip":
+    def with_covariances(self, before: int, after: int, threads: int | None) -> "AnsweredStrip":
         """Return the strip with covariances, for points that are known to touch.
 
         Parameters
         ----------
-        threads : int or None, optional
+        before, after : int
+            Rows before and after that of a known height that are looked at.
+        threads : int or None
             Threads that share the work, None for one on each core; they do not change the results.
         """
         surface, place = self._surface, (self._down, self._along)
         variances = surface.variances[place] / surface.rms**2
         first_part = surface.first_part[place]
         parts = [first_part, 1.0 - first_part] if len(self.answers) > 1 else [1.0]
+        rows = np.arange(-before >> self.shift, (after >> self.shift) + 2)
         each = zip(parts, self._filters, self._shapes, strict=True)
-        added = [self._added(part * variances, *own, threads) for part, *own in each]
+        added = [self._added(rows, part * variances, *own, threads) for part, *own in each]
         found = copy.copy(self)
-        found._covariances = np.ascontiguousarray(sum(added))
-        own = np.diagonal(found._covariances[0, :, -self._rows_of_nodes[0]])
+        found._first, found._covariances = rows[0].item(), np.ascontiguousarray(sum(added))
+        own = np.diagonal(found._covariances[0, :, -rows[0]])
         found.rms = np.sqrt(1.0 + np.interp(self._columns, self._nodes, own))
         return found
 
-    def _added(self, variances, filters, shapes, threads):
+    def _added(self, rows, variances, filters, shapes, threads):
         """Sum what the oil adds to the covariances of one surface, with heights and curvatures."""
         surface, shapes = self._surface, shapes.astype(np.float32)
         curvatures = surface.curvatures[self._down, self._along]
@@ -268,9 +249,8 @@ class AnsweredStrip:
                 of_waves[part, down] = heights, _products(by_oil, curved * signs)
 
         on_threads(fill, downs, threads)
-        lags = self._rows_of_nodes[:, None] << self.shift
-        along = [one(down_unit * lags * downs) for one in parts]
-        along = np.stack(along).astype(np.float32)
+        lags = rows[:, None] << self.shift
+        along = np.stack([one(down_unit * lags * downs) for one in parts]).astype(np.float32)
         return np.einsum("prd,pdktc->ktrc", along, of_waves, optimize=True)
 
     def of_waves(self, waves: list[Array]) -> Answered:
@@ -295,10 +275,9 @@ class AnsweredStrip:
                 rough = scipy.fft.irfft2(changed, self.points, norm="forward")
                 fields.append(np.pad(rough, (0, 1), mode="wrap"))
         shapes = np.hstack(self._shapes).astype(np.float32)
-        first = self._rows_of_nodes[0].item()
         # For another layout in memory Numba would compile the kernels once more.
         stacked = np.ascontiguousarray(np.stack(fields, axis=-1))
-        return Answered(stacked, shapes, self._covariances, first, self.shift)
+        return Answered(stacked, shapes, self._covariances, self._first, self.shift)
 
 
 def _products(some, others):

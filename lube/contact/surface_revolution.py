@@ -54,12 +54,10 @@ def revolution_contact(
     """
     spec, strips = pair.spec, strip_films(pair, film)
     known = {point: strip for point, strip in enumerate(strips) if strip}
-    found = np.full((len(strips), 1), np.nan, np.float32)
     if not known:
-        return found
+        return np.full((len(strips), 1), np.nan, np.float32)
     wide = max(strip.width for strip in known.values())
-    multiple = 2**COARSEST if pair.gap.is_answered else 1
-    surface = rough_surface(spec, wide, multiple=multiple)
+    surface = rough_surface(spec, wide, multiple=2**COARSEST if pair.gap.is_answered else 1)
     sharp = mean_breaking_curvature(pair, film)
     with one_blas_thread():
         passages = {point: _Passage(strip, pair, surface, sharp) for point, strip in known.items()}
@@ -73,7 +71,7 @@ def revolution_contact(
     def of_column(column):
         """Contacts of all pieces side by side that begin at one column."""
         columns = min(steps - column * surface.points[1], surface.points[1])
-        sums = {point: passage.empty() for point, passage in passages.items()}
+        sums = {point: np.zeros(passage.steps) for point, passage in passages.items()}
         for piece, begin in enumerate(range(0, rows, surface.points[0])):
             seeds = np.random.SeedSequence((pair.seed, number, column, piece))
             heights, curvatures, waves = surface.draw(np.random.default_rng(seeds))
@@ -110,11 +108,7 @@ class _Passage:
         # Steps at which a contact may be in the strip.
         extent = math.ceil(0.5 * longest_waves(spec)[1] / along)
         self.first_step = -surface.points[1] - extent
-        self._steps = surface.points[1] + self._film.size + 2 * extent
-
-    def empty(self):
-        """Contact lengths to which contacts are added."""
-        return np.zeros(self._steps)
+        self.steps = surface.points[1] + self._film.size + 2 * extent
 
     def add(self, summits, waves, contact):
         """Add the contacts of a piece."""
@@ -123,11 +117,8 @@ class _Passage:
         if self._answer:
             oil = self._answer.of_waves([waves])
             places = np.stack([summits.row, summits.column]) / (1 << oil.shift)
-            fields = np.moveaxis(oil.fields, -1, 0)
-            by_oil = [
-                scipy.ndimage.map_coordinates(one, places, order=1, mode="nearest")
-                for one in fields
-            ]
+            fields, linear = np.moveaxis(oil.fields, -1, 0), {"order": 1, "mode": "nearest"}
+            by_oil = [scipy.ndimage.map_coordinates(one, places, **linear) for one in fields]
             by_oil = np.stack(by_oil, axis=1)
             most = np.einsum("sm,nm->sn", by_oil, oil.shapes).max(axis=1, initial=-np.inf)
             some = np.flatnonzero(summits.height + most > self._lowest)

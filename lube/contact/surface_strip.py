@@ -70,13 +70,10 @@ area."""
 AT_ONCE = 10
 """Operating points at which the oil answers that are sampled together, for which surfaces are drawn
 again: what the oil adds to the covariances takes 5 to 40 MB a point."""
-_NUMBERS = {
-    "geometric_contact_probability": "contacts",
-    "breakthrough_probability": "breakthroughs",
-}
+_COUNTS = {"geometric_contact_probability": "contacts", "breakthrough_probability": "breakthroughs"}
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
 _RATIO = "breakdown_ratio"
-_SAMPLED = [f"{name}{end}" for name in (*_NUMBERS, *_NUMBERS.values(), _RATIO) for end in LIMITS]
+_SAMPLED = [f"{name}{end}" for name in (*_COUNTS, *_COUNTS.values(), _RATIO) for end in LIMITS]
 _VARIABLES = (*_EXPECTED, *_SAMPLED, "pair_deviation")
 
 
@@ -156,26 +153,19 @@ def surface_contact(
     for name in (f"{_RATIO}{end}" for end in LIMITS):
         found[name] = found[name] / (2.0 * half_width)
     looked_at = set(np.array(known, int)[wanted])
-    strips = [strip if point in looked_at else None for point, strip in enumerate(strips)]
-    points = thickness.copy(data=np.arange(thickness.size).reshape(thickness.shape))
-    width = _passage_width(pair, strips, slide_to_roll_ratio, points)
-    return found.assign(passage_width=width)
+    points = thickness.copy(data=np.arange(thickness.size).reshape(shape))
 
+    def passage_width(slip, point):
+        known = pair.spec, pair.length, slip
+        return strips[point].passage_width(*known) if point in looked_at else np.nan
 
-def _passage_width(pair, strips, slide_to_roll_ratio, points):
-    """Way of the rollers while a contact is in the strip, over numbers of strips and slip."""
-
-    def at(slip, point):
-        strip = strips[point]
-        return strip.passage_width(pair.spec, pair.length, slip) if strip else np.nan
-
-    return xr.apply_ufunc(np.vectorize(at, otypes=[float]), slide_to_roll_ratio, points)
+    widths = np.vectorize(passage_width, otypes=[float])
+    return found.assign(passage_width=xr.apply_ufunc(widths, slide_to_roll_ratio, points))
 
 
 def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:
     """Mean curvature of an overlap above which its boundary layer breaks, 1/m."""
-    layer = pair.layer.critical_thickness, pair.layer.shear_strength
-    return 0.5 * breaking_curvature(film["reduced_modulus"].item(), *layer)
+    return 0.5 * breaking_curvature(film["reduced_modulus"].item(), pair.layer)
 
 
 def surface_seeds(seed: int, count: int) -> list:
@@ -209,21 +199,19 @@ def strip_films(pair: RoughPair, film: xr.Dataset) -> list[StripFilm | None]:
         return strips
     answers = xr.broadcast(answers_at(film, pair.gap.has_shape, SurfaceAnswer), thickness)[0]
     answers = answers.transpose(*thickness.dims, "roller").values.reshape(-1, 2)
-    return [
-        replace(strip, answers=tuple(both)) if strip and both[0] else None
-        for strip, both in zip(strips, answers, strict=True)
-    ]
+    each = zip(strips, answers, strict=True)
+    return [replace(one, answers=tuple(both)) if one and both[0] else None for one, both in each]
 
 
 def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
     """Variables of `surface_contact` at some strips, of which changed ones are sampled."""
     spec, length = pair.spec, pair.length
-    expected = np.full((2, len(strips)), np.nan)
+    found = {name: np.full(len(strips), np.nan) for name in _VARIABLES}
+    expected, broken = (found[name] for name in _EXPECTED)
     for point in np.flatnonzero(wanted):
-        expected[:, point] = strips[point].expected(spec, length, sharp[point])
-    certain = expected[0] > MANY
-    most = np.where(expected[0] > SEVERAL, STRIPS // 2, STRIPS)
-    found = {name: np.full(len(strips), np.nan) for name in _SAMPLED}
+        expected[point], broken[point] = strips[point].expected(spec, length, sharp[point])
+    certain = expected > MANY
+    most = np.where(expected > SEVERAL, STRIPS // 2, STRIPS)
 
     def sample(surface, some, is_certain):
         own = [changed[point] for point in some]
@@ -240,7 +228,6 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
         if holds.size:  # few strips do not tell how often the layer breaks
             sample(surface, holds, np.zeros(holds.size, bool))
     perimeters = np.multiply(spec.points, spec.spacing)
-    found["pair_deviation"] = np.full(len(strips), np.nan)
     recurring = RecurringContacts(spec) if perimeters[0] != perimeters[1] else None
     for point in np.flatnonzero(wanted):
         strip, share = strips[point], found["breakthrough_probability"][point]
@@ -249,7 +236,7 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
         if recurring is not None:
             alone = recurring.at(strip.levels(spec).min())
             found["pair_deviation"][point] *= turn_ratio(*contacts, alone, perimeters) ** 0.5
-    return dict(zip(_EXPECTED, expected, strict=True)) | found
+    return found
 
 
 def _on_alike_grids(spec, strips):
@@ -324,25 +311,21 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     reach, step = _reach(pair.spec, down), pair.spec.height_step
     rows = sum(reach), reach[1]
     films = [strip.films(along) / step for strip in strips]
-    limits = [
-        strip.breaking_curvatures(along, own) / step
-        for strip, own in zip(strips, sharp, strict=True)
-    ]
-    answered = [strip.answered(surface, *rows) for strip in strips]
+    each = zip(strips, sharp, strict=True)
+    limits = [strip.breaking_curvatures(along, own) / step for strip, own in each]
+    answered = [strip.answered(surface) for strip in strips]
     with one_blas_thread():
-        answered = [oil and oil.with_covariances(threads) for oil in answered]
+        answered = [oil and oil.with_covariances(*rows, threads) for oil in answered]
     each = zip(films, limits, counts.tolist(), is_certain.tolist(), answered, strict=True)
     strips = [_SampledStrip(*one) for one in each]
     covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
 
-    def on_one_surface(of_one):
-        return _on_one_surface(of_one, surface, covariances, strips, reach)
-
+    on_one_surface = partial(_on_one_surface, surface, covariances, strips, reach)
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
     rows = max(int(pair.length / down), 1)
     results = {}
-    for which, (name, of_contacts) in enumerate(_NUMBERS.items()):
+    for which, (name, of_contacts) in enumerate(_COUNTS.items()):
         limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
         results |= values_with_limits(name, limits)
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
@@ -352,7 +335,7 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     for name in ("breakthroughs_upper", "breakthrough_probability_upper", f"{_RATIO}_upper"):
         of_contact = in_contact[2] if name == f"{_RATIO}_upper" else contacts
         results[name] = breakthrough_limit(results[name], of_contact, sampled)
-    geometric, breakthrough = _NUMBERS
+    geometric, breakthrough = _COUNTS
     for end in LIMITS:  # no layer breaks without contact, but both are known with an error
         most = results[f"{geometric}{end}"]
         results[f"{breakthrough}{end}"] = np.minimum(results[f"{breakthrough}{end}"], most)
@@ -363,12 +346,11 @@ def _reach(spec, spacing):
     """Rows beyond which rows are independent, and over which contacts are followed."""
     longest = math.ceil(longest_waves(spec)[0] / spacing)
     # Ridges at an angle reach further along the rollers than a cut through one along the rollers.
-    lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
-    oblique = max(math.prod(extents(*lay)) / lay[0] for lay in lays)
+    oblique = max(math.prod(extents(line)) / line.lay_ratio for line in spec.lines)
     return longest, min(math.ceil(AROUND * oblique), longest)
 
 
-def _on_one_surface(seeds, surface, covariances, strips, reach):
+def _on_one_surface(surface, covariances, strips, reach, seeds):
     """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 4)."""
     drawing, choosing = map(np.random.default_rng, seeds)
     *fields, waves = surface.draw(drawing)
@@ -402,16 +384,13 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
         # Strips begin at nodes.
         places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))
-        *each, contacts = touching_strips(
-            *(fields, tops, covariances, places, touching, film, strip.sharp, fading, around),
-            *(by_oil, surface.diagonal),
-        )
+        searched = around, by_oil, surface.diagonal
+        drawn = fields, tops, covariances, places, touching
+        *each, contacts = touching_strips(*drawn, film, strip.sharp, fading, *searched)
         first.append(weight * np.stack(each))
         if strip.is_certain:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
-            contacts = contacts_per_row(
-                fields, covariances, some, film, strip.sharp, around, by_oil, surface.diagonal
-            )
+            contacts = contacts_per_row(fields, covariances, some, film, strip.sharp, *searched)
         else:
             contacts = weight * contacts
         numbers.append(contacts)

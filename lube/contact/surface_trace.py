@@ -5,6 +5,7 @@ longest waves. Their joins cut few contacts. The rollers move by one period of t
 """
 
 import itertools
+from functools import partial
 
 import numpy as np
 import scipy.ndimage
@@ -79,10 +80,8 @@ def surface_traces(
     def of_piece(begin):
         seeds = np.random.SeedSequence((pair.seed, begin // surface.points[0])).spawn(9)[8]
         moving = _moving(surface, np.random.default_rng(seeds), speeds)
-        return {
-            point: _followed(surface, moving, *each, min(rows - begin, surface.points[0]), way)
-            for point, each in known.items()
-        }
+        count = min(rows - begin, surface.points[0])
+        return {point: _followed(surface, moving, *own, count, way) for point, own in known.items()}
 
     found = on_threads(of_piece, begins, threads, "trace of surfaces")
     return _table(dict(zip(begins, found, strict=True)), len(strips), way, rows, down)
@@ -144,17 +143,14 @@ def _added(surface, moving, answer):
     fields, shapes, ends = by_oil.fields[:-1, :-1], by_oil.shapes, [0]
     ends += np.cumsum([one.shapes.shape[1] for one in answer.answers]).tolist()
 
-    def of_one(begin, end):
-        def added(place):
-            nodes = (place >> answer.shift) + np.arange(shapes.shape[0])
-            part = fields[:, nodes % fields.shape[1], begin:end] * shapes[:, begin:end]
-            rough = np.sum(part, axis=-1)
-            rough = _finer(np.vstack([rough, rough[:1]]), answer.shift)
-            return _finer(rough.T, answer.shift).T
+    def added(begin, end, place):
+        nodes = (place >> answer.shift) + np.arange(shapes.shape[0])
+        part = fields[:, nodes % fields.shape[1], begin:end] * shapes[:, begin:end]
+        rough = np.sum(part, axis=-1)
+        rough = _finer(np.vstack([rough, rough[:1]]), answer.shift)
+        return _finer(rough.T, answer.shift).T
 
-        return added
-
-    return [of_one(*each) for each in itertools.pairwise(ends)]
+    return [partial(added, *each) for each in itertools.pairwise(ends)]
 
 
 def _finer(nodes, shift):
@@ -166,24 +162,21 @@ def _finer(nodes, shift):
 
 def _table(found, points, way, rows, spacing):
     """Numbers and lengths over operating point, step and place along the rollers."""
-    shape = points, way.size
     names = "contacts", "breakthroughs", "contact_length"
-    values = {name: np.full(shape, np.nan) for name in names}
-    at = np.full((*shape, PLACES), np.nan)
-    for each in (*values.values(), at):
-        each[list(found[0])] = 0.0
+    values = np.full((len(names), points, way.size), np.nan)
+    at = np.full((points, way.size, PLACES), np.nan)
+    known = list(found[0])
+    values[:, known] = at[known] = 0.0
     for begin, of_points in found.items():
         for point, steps in of_points.items():
             for step, contacts in enumerate(steps):
                 row, diameter, breaks = contacts.T
                 broken = breaks > 0.0
-                values["contacts"][point, step] += row.size
-                values["breakthroughs"][point, step] += np.count_nonzero(broken)
-                values["contact_length"][point, step] += np.sum(diameter[broken])
+                values[:, point, step] += row.size, np.count_nonzero(broken), diameter[broken].sum()
                 place = ((begin + row[broken]) * PLACES / rows).astype(np.int64)
                 at[point, step] += np.bincount(place, diameter[broken], PLACES)
     middle = (np.arange(PLACES) + 0.5) * rows * spacing / PLACES
     dims = "operating_point", "step"
-    table = {name: (dims, each) for name, each in values.items()}
+    table = {name: (dims, each) for name, each in zip(names, values, strict=True)}
     table["contact_length_at"] = (*dims, "roller_position"), at
     return xr.Dataset(table, {"step": way, "roller_position": middle})

@@ -1,8 +1,7 @@
 """Waves of rough lines in the gap: a formula flattens them, or the computed film answers them."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 import scipy
@@ -67,16 +66,14 @@ class Answer:
     coarsest: ClassVar[int] = BLOCK_SHIFT
 
     @classmethod
-    def of(
-        cls, response: Array, levels: Sequence[Array], half_width: float, importance: Array
-    ) -> "Answer":
+    def of(cls, response: Array, levels: list[Array], half_width: float, importance: Array) -> Self:
         """Expand a response of the film.
 
         Parameters
         ----------
         response : numpy.ndarray of complex, shape (w, n)
             The response.
-        levels : sequence of numpy.ndarray
+        levels : list of numpy.ndarray
             Wavelengths in m, falling, shape (w,), and positions over the half-width, rising,
             shape (n,).
         half_width : float
@@ -197,12 +194,10 @@ def answers_at(film: xr.Dataset, has_shape: bool, kind: type[Answer] = Answer) -
                     answers[roller] = kind.of(one, levels, half_width, importance)
         return answers
 
-    contact = (
-        film[name] for name in ("contact_half_width", "reduced_radius", "composite_rms_roughness")
-    )
+    contact = "contact_half_width", "reduced_radius", "composite_rms_roughness"
     core = {"input_core_dims": [["roller", *names], [], [], []], "output_core_dims": [["roller"]]}
     options = {"vectorize": True, "output_dtypes": [object]}
-    return xr.apply_ufunc(of_both, response, *contact, **core, **options)
+    return xr.apply_ufunc(of_both, response, *(film[name] for name in contact), **core, **options)
 
 
 def lifted(

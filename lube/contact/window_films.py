@@ -87,9 +87,8 @@ def window_films(film: xr.Dataset, grid: LineGrid) -> Array:
             return None
         first, last = -position[[-1, 0]] * half_width / grid.spacing
         points = np.arange(np.ceil(first), np.floor(last) + 1.0)
-        return WindowFilm(
-            film_on_points(position, profile, half_width, points, grid), int(-points[0])
-        )
+        films = film_on_points(position, profile, half_width, points, grid)
+        return WindowFilm(films, int(-points[0]))
 
     shaped, width = shaped_films(film), film["contact_half_width"]
     options = {"input_core_dims": [["film_position"], []], "output_dtypes": [object]}

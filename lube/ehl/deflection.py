@@ -114,5 +114,4 @@ def _series():
 def _table():
     argument = np.arange(0.5, _FAR + 0.5, _TABLE_STEP)
     integral, first = scipy.special.iti0k0(argument)[1], scipy.special.k1(argument)
-    values = argument * integral - 1.0 + argument * first
-    return scipy.interpolate.CubicSpline(argument, values)
+    return scipy.interpolate.CubicSpline(argument, argument * integral - 1.0 + argument * first)

@@ -288,9 +288,8 @@ def moes(load: Values, speed: Values, material: Values) -> Values:
     >>> f"{moes(1.39e-5, 2.52e-11, 3696.0):.3g}"
     '4.51e-05'
     """
-    rigid_iso, rigid_piezo, elastic_iso, elastic_piezo = moes_asymptotes(
-        *moes_numbers(load, speed, material)
-    )
+    numbers = moes_numbers(load, speed, material)
+    rigid_iso, rigid_piezo, elastic_iso, elastic_piezo = moes_asymptotes(*numbers)
     s = (7.0 + 8.0 * np.exp(-2.0 * elastic_iso / rigid_iso)) / 5.0
     isoviscous = rigid_iso ** (7.0 / 3.0) + elastic_iso ** (7.0 / 3.0)
     piezoviscous = rigid_piezo**-3.5 + elastic_piezo**-3.5

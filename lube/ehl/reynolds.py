@@ -91,8 +91,7 @@ class DiscreteContact:
         self.deflection = deflection_matrix(self.middle, nodes, across)
         # Weights of the trapezoidal rule.
         self.weight = 0.5 * (np.append(self.step, 0.0) + np.append(0.0, self.step))
-        scale = is_damped * _DAMPING * contact.film_guess
-        self.damping = scale * _fifth_differences(nodes)
+        self.damping = is_damped * _DAMPING * contact.film_guess * _fifth_differences(nodes)
 
     def gap(self, pressure: Array, offset: float) -> Array:
         """Evaluate the scaled gap H midway between the nodes."""

@@ -67,20 +67,17 @@ def passage_nodes(profile: FilmProfile, step: float, reach: float = REACH) -> Ar
     """
     first, last = int(reach / step) + 1, int((profile.film_end + BEYOND) / step) + 1
     even = step * np.arange(-first, last + 1)
-    before, behind = (
-        side * _growing(side * start, side * end, step, growth)
-        for side, start, end, growth in zip(
-            (-1.0, 1.0), even[[0, -1]], profile.nodes[[0, -1]], _GROWTH, strict=True
-        )
-    )
+    ends = zip((-1.0, 1.0), even[[0, -1]], profile.nodes[[0, -1]], _GROWTH, strict=True)
+    before, behind = (_growing(step, *each) for each in ends)
     return np.concatenate([before[::-1], even, behind])
 
 
-def _growing(start, end, step, growth):
-    """Positions from a start, not included, to an end, farther and farther apart."""
-    count = max(1, round(np.log1p((end - start) * (growth - 1.0) / step) / np.log(growth)))
+def _growing(step, side, start, end, growth):
+    """Positions from a start, not included, to an end on a side, farther and farther apart."""
+    length = side * end - side * start
+    count = max(1, round(np.log1p(length * (growth - 1.0) / step) / np.log(growth)))
     sizes = growth ** np.arange(1, count + 1)
-    return start + (end - start) * np.cumsum(sizes) / np.sum(sizes)
+    return side * (side * start + length * np.cumsum(sizes) / np.sum(sizes))
 
 
 class RoughPassage:

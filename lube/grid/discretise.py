@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.operating_points import surface_speeds
 from lube.kernels.layer import layer_factor
+from lube.types import Pair, Ratios, Values
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ UNKNOWN_FILM = 2**40
 to overflow int64."""
 
 
-def speed_ratios(slide_to_roll_ratio: float) -> tuple[float, float]:
+def speed_ratios(slide_to_roll_ratio: float) -> Ratios:
     r"""Speeds of the two surfaces over that of the faster one.
 
     .. math:: \frac{v_i}{\max(v_1, v_2)}
@@ -65,7 +65,7 @@ def speed_ratios(slide_to_roll_ratio: float) -> tuple[float, float]:
     return first / max(first, second), second / max(first, second)
 
 
-def revolution(pair: tuple[np.ndarray, np.ndarray], ratios: tuple[float, float]) -> int:
+def revolution(pair: Pair, ratios: Ratios) -> int:
     """Count the time steps in one revolution of the roller with the faster surface.
 
     Parameters
@@ -88,7 +88,7 @@ def revolution(pair: tuple[np.ndarray, np.ndarray], ratios: tuple[float, float])
     return pair[0].size if ratios[0] == 1.0 else pair[1].size
 
 
-def line_pair(lines: xr.Dataset, realisation: int) -> tuple[np.ndarray, np.ndarray]:
+def line_pair(lines: xr.Dataset, realisation: int) -> Pair:
     """Extract the two lines of a realisation in whole height steps.
 
     Parameters
@@ -151,14 +151,12 @@ def layer_factor_of(grid: LineGrid, reduced_modulus: float, boundary_layer) -> f
     return layer_factor(reduced_modulus, *layer, grid.spacing, grid.height_step)
 
 
-def whole_numbers(
-    film_thickness: npt.ArrayLike, half_width: npt.ArrayLike, grid: LineGrid
-) -> tuple[np.ndarray, np.ndarray]:
+def whole_numbers(film_thickness: Values, half_width: Values, grid: LineGrid) -> Pair:
     r"""Express films in height steps and half-windows in grid points.
 
     Parameters
     ----------
-    film_thickness, half_width : array_like
+    film_thickness, half_width : float or numpy.ndarray
         :math:`h_0` and :math:`a`, m, of equal shape.
     grid : LineGrid
         Grid of the lines.
@@ -174,7 +172,6 @@ def whole_numbers(
     >>> whole_numbers([1e-9], [3.9e-6], LineGrid(spacing=1e-6, height_step=1e-12))
     (array([1000]), array([3]))
     """
-    steps = np.fmin(np.asarray(film_thickness) / grid.height_step, UNKNOWN_FILM)
-    films = np.rint(steps)
+    films = np.rint(np.fmin(np.asarray(film_thickness) / grid.height_step, UNKNOWN_FILM))
     half_windows = np.floor(np.asarray(half_width) / grid.spacing)
     return films.astype(np.int64), half_windows.astype(np.int64)

@@ -44,11 +44,7 @@ LONG = 16.0
 DIRECTIONS, LENGTHS = 180, 1000
 """Directions and lengths among which the mean square height of a surface is distributed."""
 VARIABLES = "response_real", "response_imaginary", "interpolation_error", "rms_deformation"
-SURFACE_VARIABLES = (
-    "surface_response_real",
-    "surface_response_imaginary",
-    "surface_rms_deformation",
-)
+SURFACE_VARIABLES = [f"surface_{name}" for name in VARIABLES if name != "interpolation_error"]
 
 
 def wave_responses(
@@ -87,10 +83,8 @@ def wave_responses(
     between the stored one at which the response in the contact is least smooth and its neighbours;
     the largest is stored.
     """
-    angles = np.zeros(1)
-    response, error = _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads)
-    heights = line_heights(spec, response["wavelength"].values)
-    deformation = _deformation(response, heights)
+    response, error = _solved(solved, contact, slide_to_roll_ratio, spec, np.zeros(1), threads)
+    deformation = _deformation(response, line_heights(spec, response["wavelength"].values))
     response, error = (each.isel(wave_angle=0, drop=True) for each in (response, error))
     values = response.real, response.imag, error, deformation
     return xr.Dataset(dict(zip(VARIABLES, values, strict=True)))
@@ -124,7 +118,7 @@ def with_surface_responses(inputs: Datasets) -> xr.Dataset:
     film = inputs["film"]
     if "surface_response" not in inputs:
         return film
-    responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
+    responses = inputs["surface_response"][SURFACE_VARIABLES]
     return film.assign(responses.rename(film_position="response_position"))
 
 
@@ -200,10 +194,8 @@ def surface_heights(spec, wavelengths: Array) -> Array:
 
 def line_heights(spec, wavelengths: Array) -> Array:
     """Distribute the mean square height of each line as in `surface_heights`, at the angle 0."""
-    shares = []
-    for roller in (0, 1):
-        length, power = line_waves(spec, roller)
-        shares.append(_spread(power, (-np.log(length), -np.log(wavelengths))))
+    both = (line_waves(spec, roller) for roller in (0, 1))
+    shares = [_spread(power, (-np.log(length), -np.log(wavelengths))) for length, power in both]
     return np.array(shares)[:, None]
 
 

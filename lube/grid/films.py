@@ -149,12 +149,9 @@ def _films_at(rows, groups, radius, thinner, part):
 
 
 def _heating_factor(model, lubricant, contact, groups, slip):
-    loading = thermal_loading(
-        lubricant["dynamic_viscosity"],
-        lubricant["temperature_viscosity_coefficient"],
-        contact["entrainment_speed"],
-        lubricant["thermal_conductivity"],
-    )
+    oil = lubricant["dynamic_viscosity"], lubricant["temperature_viscosity_coefficient"]
+    speed, conductivity = contact["entrainment_speed"], lubricant["thermal_conductivity"]
+    loading = thermal_loading(*oil, speed, conductivity)
     pressure = contact["hertz_pressure"] / (2.0 * contact["reduced_modulus"])
     film = xr.apply_ufunc(asymptotic_gap, *groups.moes_numbers, join="exact")
     arguments = loading, slip, pressure, film
@@ -223,8 +220,7 @@ class FilmGroups:
         load = np.pi / 8.0 * (film["contact_half_width"] / radius) ** 2
         speed = 0.5 * (load / film["moes_load"]) ** 2
         material = film["moes_material"] / (2.0 * speed) ** 0.25
-        known = "inlet_meniscus" in film
-        meniscus = (film["inlet_meniscus"] / radius).item() if known else None
+        meniscus = (film["inlet_meniscus"] / radius).item() if "inlet_meniscus" in film else None
         oil = film["dynamic_viscosity"], 2.0 * film["reduced_modulus"]
         return cls(load, speed, material, *oil, meniscus)
 
@@ -283,14 +279,15 @@ class FilmGroups:
 
 def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Dataset:
     """Hertz contact of smooth, dry rollers; arguments as in `film_at`."""
-    pair = (rollers.length, rollers.reduced_radius, rollers.reduced_modulus)
+    pair = rollers.length, rollers.reduced_radius, rollers.reduced_modulus
+    half_width = hertz.contact_half_width(force, *pair)
     return xr.Dataset(
         {
             "reduced_radius": rollers.reduced_radius,
             "reduced_modulus": rollers.reduced_modulus,
             "composite_rms_roughness": rollers.composite_rms_roughness,
-            "contact_half_width": hertz.contact_half_width(force, *pair),
-            "hertz_pressure": hertz.maximum_pressure(force, *pair),
+            "contact_half_width": half_width,
+            "hertz_pressure": hertz.maximum_pressure(force, half_width, rollers.length),
             "entrainment_speed": 2.0 * np.pi * rollers.first.radius * speed / 60.0,
         }
     )

@@ -109,5 +109,4 @@ def rubbing(film: xr.Dataset) -> xr.DataArray:
     xarray.DataArray
         Whether `surface_load_share` is above `LARGEST_SHARE`; False where it is not known.
     """
-    unknown = xr.zeros_like(film["film_thickness"])
-    return film.get("surface_load_share", unknown) > LARGEST_SHARE
+    return film.get("surface_load_share", xr.zeros_like(film["film_thickness"])) > LARGEST_SHARE

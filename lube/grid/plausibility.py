@@ -105,11 +105,9 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     waves, points = width / shortest, shortest / lines.spacing
     share = expected_load_share(film, rollers)
     # No line stands for surfaces whose ridges run along rolling.
-    loaded, overloaded = (
-        int((share > limit).sum()) * lines.follows_rolling for limit in (0.1, 1.0)
-    )
+    loaded, overloaded = (int((share > part).sum()) * lines.follows_rolling for part in (0.1, 1.0))
     carried = film.get("surface_load_share", xr.zeros_like(films))
-    rubs, overrubs = (int((carried > limit).sum()) for limit in (0.1, 1.0))
+    rubs, overrubs = (int((carried > part).sum()) for part in (0.1, 1.0))
     more, most = (f"at {n} more than all of it, " if n else "" for n in (overloaded, overrubs))
     bends = int((deformed(film) | deformed(film, film)).sum())  # lines or surfaces
     found = {

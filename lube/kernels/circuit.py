@@ -75,9 +75,8 @@ def sampled_voltage(
     for sample in range(samples):
         last = min(int(sample * steps_per_sample), contact.size - 1)
         touched = 0
-        for i in range(
-            np.uint64(step), np.uint64(last + 1)
-        ):  # without a branch, so the compiler vectorises it
+        # Without a branch, so the compiler vectorises it.
+        for i in range(np.uint64(step), np.uint64(last + 1)):
             touched |= contact[i]
         if touched == 0 and abs(gap - targets[0]) < settled:
             gap = targets[0]

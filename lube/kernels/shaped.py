@@ -146,11 +146,11 @@ def _window(lines, ahead, first_1, first_2, film, least, answers, factor):
                 node, part = (point + phase) >> shift, (point + phase) & (step - 1)
                 overlap += lift[node] + ((lift[node + 1] - lift[node]) * part >> shift)
             if overlap > 0:
+                contact_points += 1
+                total_overlap += overlap
                 segment_points += 1
                 segment_overlap += overlap
             elif segment_points > 0:
-                contact_points += segment_points
-                total_overlap += segment_overlap
                 if layer_breaks(segment_points, segment_overlap, factor):
                     broken_points += segment_points
                 segment_points = segment_overlap = 0
@@ -162,11 +162,8 @@ def _window(lines, ahead, first_1, first_2, film, least, answers, factor):
             k += 1
             if k == line_2.size:
                 k = 0
-    if segment_points > 0:  # cut by the window's edge
-        contact_points += segment_points
-        total_overlap += segment_overlap
-        if layer_breaks(segment_points, segment_overlap, factor):
-            broken_points += segment_points
+    if layer_breaks(segment_points, segment_overlap, factor):  # cut by the window's edge
+        broken_points += segment_points
     return contact_points, broken_points, total_overlap
 
 

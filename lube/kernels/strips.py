@@ -54,11 +54,9 @@ def strip_end(step: int, steps: int, speed_ratios: Ratios) -> int:
     if speed_ratios[0] == speed_ratios[1]:
         return last
     first_1, first_2 = _positions(step, speed_ratios)
+    ahead_1, ahead_2 = first_1 - step, first_2 - step
     end = step + 1
-    while end < last and _positions(end, speed_ratios) == (
-        first_1 + end - step,
-        first_2 + end - step,
-    ):
+    while end < last and _positions(end, speed_ratios) == (ahead_1 + end, ahead_2 + end):
         end += 1
     return end
 

@@ -108,8 +108,7 @@ def connected_summits(heights: Array, curvatures: Array, spacing: Pair, least: f
         row, column = tops[number] // columns, tops[number] % columns
         _fit(fitted[:, number], heights, curvatures, spacing, row, column)
     each = fitted[0], fitted[1], fitted[2], fitted[3], fitted[4], fitted[5]
-    saddle, higher = saddle[:count].copy(), higher[:count].copy()
-    return Summits(*each, saddle, higher)
+    return Summits(*each, saddle[:count].copy(), higher[:count].copy())
 
 
 @kernel

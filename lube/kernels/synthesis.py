@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from lube.kernels.compiler import kernel
+from lube.types import Array
 
 PHASES = 2**16
 """Number of equally spaced phases from which the phasors are drawn."""
@@ -15,7 +16,7 @@ _ANGLES = 2.0 * math.pi * np.arange(PHASES) / PHASES
 _PHASORS = (np.cos(_ANGLES) + 1j * np.sin(_ANGLES)).astype(np.complex64)
 
 
-def random_phasors(generator: np.random.Generator, count: int) -> np.ndarray:
+def random_phasors(generator: np.random.Generator, count: int) -> Array:
     r"""Draw unit phasors :math:`e^{i \varphi}` with uniformly distributed random phases.
 
     Parameters
@@ -39,7 +40,7 @@ def random_phasors(generator: np.random.Generator, count: int) -> np.ndarray:
     return _PHASORS[generator.integers(0, PHASES, count, dtype=np.uint16)]
 
 
-def gaussian_phasors(generator: np.random.Generator, count: int) -> np.ndarray:
+def gaussian_phasors(generator: np.random.Generator, count: int) -> Array:
     """Draw complex Gaussian numbers with a mean square of one.
 
     Parameters
@@ -63,7 +64,7 @@ def gaussian_phasors(generator: np.random.Generator, count: int) -> np.ndarray:
 
 
 @kernel
-def power_series(values: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+def power_series(values: Array, coefficients: Array) -> Array:
     r"""Sum a power series without a constant term, :math:`\sum_{n \ge 1} c_n x^n`.
 
     Parameters
@@ -93,9 +94,7 @@ def power_series(values: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
 
 
 @kernel
-def translated_steps(
-    heights: np.ndarray, curve: np.ndarray, reach: float, rms: float
-) -> np.ndarray:
+def translated_steps(heights: Array, curve: Array, reach: float, rms: float) -> Array:
     """Translate heights by a curve, and scale them to an rms height in whole height steps.
 
     Parameters
@@ -139,7 +138,7 @@ def translated_steps(
 
 
 @kernel
-def mean_powers(line: np.ndarray) -> tuple[float, float, float]:
+def mean_powers(line: Array) -> tuple[float, float, float]:
     """Mean square, cube and fourth power of a line's heights.
 
     Parameters

@@ -223,12 +223,10 @@ def _run_around(moved, point, step):
 @inlined
 def _broke_before(moved, start, stop, factor):
     """Decide whether a layer broke in points of either line one relative step earlier."""
-    broken = False
     point = start
     while point <= stop:
         first, after, total = _run_around(moved, point, -1)
         if _overlap(moved, point, -1) > 0.0 and layer_breaks(after - first, total, factor):
-            broken = True
-            break
+            return True
         point = max(after, point + 1)
-    return broken
+    return False

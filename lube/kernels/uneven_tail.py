@@ -135,20 +135,18 @@ def touching_runs_under(
         for s in range(len(speed_ratios)):
             times = 1
             for stride in (-strides[s], strides[s]):
-                motion = m, stride, speed_ratios[s]
-                times += _times_broken(around, motion, factor, start, stop)
+                times += _times_broken(around, m, stride, speed_ratios[s], factor, start, stop)
             sums[1 + s] += 1.0 / (points * strides[s] * times)
     return sums
 
 
 @kernel
-def _times_broken(around, motion, factor, start, stop):
+def _times_broken(around, now, stride, ratios, factor, start, stop):
     """Count the looks, before or after the present time step, at which a run breaks.
 
     The run is followed as long as any of its points touches, as either surface carries them on.
     """
-    (answered, _, _, film), (now, stride, ratios) = around, motion
-    answers = answered[5]
+    film, answers = around[3], around[0][5]
     times = first = second = step = 0
     while stop > start:
         step += stride

@@ -1,7 +1,5 @@
 """Electrical resistance between the rollers, and the circuit that measures it."""
 
-from typing import Protocol
-
 import numpy as np
 
 from lube.physics.hertz import hertz_gap
@@ -15,22 +13,6 @@ _POINTS = ((2.0 * np.arange(_PARTS)[:, None] + 1.0 + _RULE[0]) / _PARTS - 1.0).r
 _WEIGHTS = np.tile(_RULE[1] / _PARTS, _PARTS)
 _WIDE = 9.0
 """Standard deviations beyond which a normal density is left out."""
-
-
-class Circuit(Protocol):
-    """Voltage divider: a source in series with a resistor, the leads and the contact.
-
-    Attributes
-    ----------
-    bias_voltage : float
-        Voltage U of the source, V.
-    series_resistance, lead_resistance : float
-        Resistances R_s of the resistor and R_l of the leads, ohm.
-    """
-
-    bias_voltage: float
-    series_resistance: float
-    lead_resistance: float
 
 
 def contact_resistance(contact_length: Values, resistivity: float) -> Values:
@@ -59,7 +41,7 @@ def contact_resistance(contact_length: Values, resistivity: float) -> Values:
         return resistivity / np.asarray(contact_length, float)
 
 
-def divider_voltage(resistance: Values, circuit: Circuit) -> Values:
+def divider_voltage(resistance: Values, circuit) -> Values:
     r"""Voltage logged over leads and contact at a steady contact resistance.
 
     .. math:: V = U \frac{R_l + R}{R_s + R_l + R}
@@ -68,8 +50,10 @@ def divider_voltage(resistance: Values, circuit: Circuit) -> Values:
     ----------
     resistance : float or numpy.ndarray
         Contact resistance :math:`R`, ohm; may be infinite.
-    circuit : Circuit
-        The voltage divider.
+    circuit : lube.study.rig_settings.Rig
+        Voltage divider: a source of ``bias_voltage`` :math:`U`, V, in series with a resistor, the
+        leads and the contact; ``series_resistance`` :math:`R_s` and ``lead_resistance``
+        :math:`R_l`, ohm.
 
     Returns
     -------
@@ -87,7 +71,7 @@ def divider_voltage(resistance: Values, circuit: Circuit) -> Values:
     return circuit.bias_voltage / (1.0 + ratio)
 
 
-def resistance_from_voltage(voltage: Values, circuit: Circuit) -> Values:
+def resistance_from_voltage(voltage: Values, circuit) -> Values:
     r"""Contact resistance that follows from a logged voltage; inverse of `divider_voltage`.
 
     .. math:: R = R_s \frac{V}{U - V} - R_l
@@ -96,8 +80,8 @@ def resistance_from_voltage(voltage: Values, circuit: Circuit) -> Values:
     ----------
     voltage : float or numpy.ndarray
         Logged voltage :math:`V`, V.
-    circuit : Circuit
-        The voltage divider.
+    circuit : lube.study.rig_settings.Rig
+        As in `divider_voltage`.
 
     Returns
     -------

@@ -93,17 +93,17 @@ def contact_half_width(
     return np.sqrt(4.0 * force * reduced_radius / (np.pi * length * reduced_modulus))
 
 
-def maximum_pressure(
-    force: Values, length: float, reduced_radius: float, reduced_modulus: float
-) -> Values:
+def maximum_pressure(force: Values, half_width: Values, length: float) -> Values:
     r"""Maximum Hertzian pressure, on the centre line of the contact strip.
 
     .. math:: p_H = \frac{2 F_N}{\pi a L'}
 
     Parameters
     ----------
-    force, length, reduced_radius, reduced_modulus
+    force, length
         As in `contact_half_width`.
+    half_width : float or numpy.ndarray
+        :math:`a`, m, from there.
 
     Returns
     -------
@@ -112,10 +112,9 @@ def maximum_pressure(
 
     Examples
     --------
-    >>> f"{maximum_pressure(1600.0, 0.01, 0.025, 1.154e11):.3g}"
+    >>> f"{maximum_pressure(1600.0, 2.1e-4, 0.01):.3g}"
     '4.85e+08'
     """
-    half_width = contact_half_width(force, length, reduced_radius, reduced_modulus)
     return 2.0 * force / (np.pi * half_width * length)
 
 

@@ -127,44 +127,41 @@ class LoadShare:
     ----------
     share : callable
         Share from the lambda ratio.
+    source : str
+        Where it is from.
     roughness : str
         What the film is divided by: the property ``composite_rms_roughness`` of the rollers, or
         ``mean_ra_roughness``.
     pressure : float
-        Largest Hertzian pressure for which the curve is meant, Pa.
-    source : str
-        Where it is from.
+        Largest Hertzian pressure for which the curve is meant, Pa; by default any.
     """
 
     share: Callable[[Values], Values]
-    roughness: str
-    pressure: float
     source: str
+    roughness: str = "composite_rms_roughness"
+    pressure: float = np.inf
 
 
-_COMPOSITE, _MEAN_RA, _ANY = "composite_rms_roughness", "mean_ra_roughness", np.inf
 _ZHOU = (
     "R. S. Zhou, M. R. Hoeprich, J. Tribol. 113 (1991) 590, Eq. 29, constants of Lubricants 11 "
     "(2023) 369, Table 4"
 )
 LOAD_SHARES = {
     "zhou-hoeprich-1991": LoadShare(
-        lambda ratio: np.exp(-2.32 * ratio**0.97), _COMPOSITE, _ANY, f"{_ZHOU}, first pair"
+        lambda ratio: np.exp(-2.32 * ratio**0.97), f"{_ZHOU}, first pair"
     ),
     "zhou-hoeprich-1991-second": LoadShare(
-        lambda ratio: np.exp(-1.90 * ratio**0.99), _COMPOSITE, _ANY, f"{_ZHOU}, second pair"
+        lambda ratio: np.exp(-1.90 * ratio**0.99), f"{_ZHOU}, second pair"
     ),
     "aihara-1987": LoadShare(
         lambda ratio: np.exp(-1.8 * ratio**1.2),
-        _COMPOSITE,
-        AIHARA_PRESSURE,
         "S. Aihara, J. Tribol. 109 (1987) 471, after Patir and Cheng",
+        pressure=AIHARA_PRESSURE,
     ),
     "doleschel": LoadShare(
         lambda ratio: np.clip(1.0 - 0.5 * ratio, 0.0, None) ** 2,
-        _MEAN_RA,
-        _ANY,
         "A. Doleschel, thesis, TU Munich, as in A. Arana et al., Proc. IMechE J 233 (2019) 303",
+        "mean_ra_roughness",
     ),
 }
 """Published curves of the load that asperities carry, by name."""
@@ -176,8 +173,7 @@ def _biboulet(load, speed, material):
     joined = (1.0 + (1.4 / 1.45 * np.sqrt(moes_load)) ** 10) ** 0.1
     of_load = (moes_load >= 0.2) & (moes_load <= 200.0)
     of_material = (moes_material >= 4.0) & (moes_material <= 16.0)
-    resistance = load**1.5 * 1.4 / (moes_load * joined)
-    return np.where(of_load & of_material, resistance, np.nan)[()]
+    return np.where(of_load & of_material, load**1.5 * 1.4 / (moes_load * joined), np.nan)[()]
 
 
 def _powers(factor, of_speed, of_load, of_material, load, speed, material):

@@ -233,8 +233,7 @@ def _pressure_missing(log_factor: Array, loading: Array, slip: Array, film: Arra
 
     def rate(terms, y):
         height, (driving, heating) = np.abs(y), terms
-        heat = height**9 + heating * np.sqrt(height) + sliding
-        return driving / np.maximum(heat, 1e-300)
+        return driving / np.maximum(height**9 + heating * np.sqrt(height) + sliding, 1e-300)
 
     positions, half = np.linspace(np.log(_REACH), np.log(_NEAREST), 2 * _STEPS + 1, retstep=True)
     y, start = np.ones_like(film), at(positions[0])

@@ -6,7 +6,7 @@ the ratio itself overflows, and its slope against pressure.
 
 import numpy as np
 
-from lube.types import Values
+from lube.types import Pair, Values
 
 ROELANDS_PRESSURE = 1.962e8
 """Pressure p0 of Roelands' law, Pa."""
@@ -16,9 +16,7 @@ ROELANDS_VISCOSITY = np.exp(-9.67)
 _DENSITY_PRESSURE, _DENSITY_LIMIT = 0.59e9, 1.34
 
 
-def barus(
-    pressure: Values, pressure_viscosity_coefficient: float, viscosity: float
-) -> tuple[Values, Values]:
+def barus(pressure: Values, pressure_viscosity_coefficient: float, viscosity: float) -> Pair:
     r"""Logarithm of the viscosity ratio by Barus' law, and its slope.
 
     .. math:: \ln \frac{\eta}{\eta_0} = \alpha p
@@ -46,9 +44,7 @@ def barus(
     return pressure_viscosity_coefficient * pressure, slope
 
 
-def roelands(
-    pressure: Values, pressure_viscosity_coefficient: float, viscosity: float
-) -> tuple[Values, Values]:
+def roelands(pressure: Values, pressure_viscosity_coefficient: float, viscosity: float) -> Pair:
     r"""Logarithm of the viscosity ratio by Roelands' law, and its slope.
 
     .. math::
@@ -93,7 +89,7 @@ PRESSURE_LAWS = {"roelands": roelands, "barus": barus}
 """Laws of viscosity under pressure, by name."""
 
 
-def dowson_higginson_density(pressure: Values) -> tuple[Values, Values]:
+def dowson_higginson_density(pressure: Values) -> Pair:
     r"""Density ratio by the law of Dowson and Higginson, and its slope.
 
     .. math:: \frac{\rho}{\rho_0} = \frac{0.59 \times 10^9 + 1.34\, p}{0.59 \times 10^9 + p}

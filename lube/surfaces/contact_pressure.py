@@ -33,7 +33,8 @@ import numpy as np
 import scipy
 
 from lube.surfaces.rare_contact import check_stands_for_surface
-from lube.surfaces.synthetic import LineSpecLike, wave_amplitudes
+from lube.surfaces.spectra import wave_powers
+from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array
 
 STIFFNESS = 0.4
@@ -95,7 +96,7 @@ def _curve(spec):
 
 def _waves(spec):
     """Wavenumbers, rad/m, and variances, m^2, of bands of both surfaces' waves, rising."""
-    both = [_waves_of_line(spec, roller) for roller in (0, 1)]
+    both = [wave_powers(spec, roller) for roller in (0, 1)]
     wavenumber, variance = np.concatenate(both, axis=1)
     order = np.argsort(wavenumber)
     wavenumber, variance = wavenumber[order], variance[order]
@@ -104,12 +105,6 @@ def _waves(spec):
     edges = edges[np.add.reduceat(variance, edges) > 0.0]  # with a lay the longest may be 0
     of_bands = np.add.reduceat(variance, edges)
     return np.add.reduceat(variance * wavenumber, edges) / of_bands, of_bands
-
-
-def _waves_of_line(spec, roller):
-    first, amplitudes = wave_amplitudes(spec, roller)
-    step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
-    return step * (first + np.arange(amplitudes.size)), 0.5 * amplitudes**2
 
 
 def _mean_gaps(wavenumber, variance, pressures):

@@ -117,9 +117,7 @@ def press_surface(
     """
     tamaas = find_tamaas()
     points = heights.shape[0]
-    model = tamaas.ModelFactory.createModel(
-        tamaas.model_type.basic_2d, [1.0, 1.0], [points, points]
-    )
+    model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [1.0] * 2, [points] * 2)
     # Lengths over the side, and pressures over the pressure that deforms as much as the slopes do.
     model.E, model.nu = 1.0, 0.0
     scale = np.std(heights) / side

@@ -189,8 +189,7 @@ def rare_contact(
         shape = np.full(width, film, np.float32)
         windows[:, i] = drawn.windows(shape, touching, own) * (width * np.exp(log_tail))
         known = drawn.lines, drawn.places, drawn.covariances, touching[1][:RUNS]
-        found = touching_runs(*known, film, width, own)
-        runs[:, i] = found * (np.exp(log_tail) / RUNS)
+        runs[:, i] = touching_runs(*known, film, width, own) * (np.exp(log_tail) / RUNS)
     return windows, runs
 
 

@@ -181,10 +181,7 @@ def field(waves: Array, points: tuple[int, int]) -> Array:
 
 def longest_waves(spec: LineSpecLike) -> Pair:
     """Longest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
-    waves = [
-        np.multiply(2.0 * math.pi / line.q_min, extents(line.lay_ratio, line.lay_angle))
-        for line in spec.lines
-    ]
+    waves = [np.multiply(2.0 * math.pi / line.q_min, extents(line)) for line in spec.lines]
     along, across = np.max(waves, axis=0).tolist()
     return across, along
 
@@ -192,12 +189,8 @@ def longest_waves(spec: LineSpecLike) -> Pair:
 def shortest_waves(spec: LineSpecLike) -> Pair:
     """Shortest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
     # A cut through a ridge along one side, over its reach along the other.
-    waves = [
-        line.shortest_wavelength
-        * line.lay_ratio
-        / np.array(extents(line.lay_ratio, line.lay_angle))
-        for line in spec.lines
-    ]
+    lines = spec.lines
+    waves = [one.shortest_wavelength * one.lay_ratio / np.array(extents(one)) for one in lines]
     return tuple(np.min(waves, axis=0).tolist())
 
 
@@ -223,9 +216,8 @@ def surface_grid(
         If the band of wavelengths is too wide for the grid.
     """
     sides, spacings = [], []
-    for longest, shortest, own in zip(
-        longest_waves(spec), shortest_waves(spec), contact, strict=True
-    ):
+    of_sides = zip(longest_waves(spec), shortest_waves(spec), contact, strict=True)
+    for longest, shortest, own in of_sides:
         side, spacing = max(waves * longest, width + longest), shortest / POINTS_PER_WAVE
         spacing = min(spacing, max(own / POINTS_PER_CONTACT, side / LARGE))
         times = side / spacing / LARGEST

@@ -4,10 +4,10 @@ import numpy as np
 import scipy.fft
 
 from lube.surfaces.synthetic import LineSpecLike, wave_amplitudes
-from lube.types import Array
+from lube.types import Array, Pair
 
 
-def line_moments(line: np.ndarray, spacing: float) -> dict[str, float]:
+def line_moments(line: Array, spacing: float) -> dict[str, float]:
     """Moments of one periodic line.
 
     Slope and curvature are finite differences of neighbouring points, the finest scale that the
@@ -32,8 +32,7 @@ def line_moments(line: np.ndarray, spacing: float) -> dict[str, float]:
     >>> {name: f"{value:.2f}" for name, value in moments.items() if name != "skewness"}
     {'rms_height': '0.71', 'rms_slope': '0.71', 'rms_curvature': '0.71', 'kurtosis': '1.50'}
     """
-    before = np.roll(line, 1)
-    slope = (line - before) / spacing
+    slope = (line - np.roll(line, 1)) / spacing
     curvature = (np.roll(slope, -1) - slope) / spacing
     variance = np.mean(line**2)
     return {
@@ -45,7 +44,7 @@ def line_moments(line: np.ndarray, spacing: float) -> dict[str, float]:
     }
 
 
-def power_spectrum(line: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+def power_spectrum(line: Array, spacing: float) -> Pair:
     r"""One-sided power spectral density of a periodic line.
 
     .. math:: C_{1D}(q_k) = \frac{a_k^2}{2\, \Delta q}, \qquad \Delta q = \frac{2\pi}{N \Delta x}
@@ -125,6 +124,19 @@ def pair_moments(spec: LineSpecLike) -> list[float]:
     return [sum(root**2 for root in roots) for roots in zip(*lines, strict=True)]
 
 
+def wave_powers(spec: LineSpecLike, roller: int) -> Pair:
+    """Wave vectors of a line's waves, rad/m, and their mean squares, m^2.
+
+    Parameters
+    ----------
+    spec, roller
+        As in `spectrum_moments`.
+    """
+    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    return step * (first_wave + np.arange(amplitudes.size)), 0.5 * amplitudes**2
+
+
 def wave_moments(spec: LineSpecLike, roller: int) -> Array:
     r"""Moments of a line's waves themselves, without a grid.
 
@@ -140,13 +152,11 @@ def wave_moments(spec: LineSpecLike, roller: int) -> Array:
     numpy.ndarray
         :math:`m_0` (m^2), :math:`m_2` and :math:`m_4` (1/m^2).
     """
-    first_wave, amplitudes = wave_amplitudes(spec, roller)
-    waves = np.arange(first_wave, first_wave + amplitudes.size)
-    wave_vector = 2.0 * np.pi / (spec.points[roller] * spec.spacing) * waves
-    return 0.5 * np.array([np.sum(amplitudes**2 * wave_vector**n) for n in (0, 2, 4)])
+    wave_vector, power = wave_powers(spec, roller)
+    return np.array([np.sum(power * wave_vector**n) for n in (0, 2, 4)])
 
 
-def autocovariance(spec: LineSpecLike, roller: int, lags: int) -> np.ndarray:
+def autocovariance(spec: LineSpecLike, roller: int, lags: int) -> Array:
     r"""Covariance of the heights of one line at two points, against their distance.
 
     .. math:: R_n = \frac12 \sum_k a_k^2 \cos \frac{2 \pi k n}{N}
@@ -170,7 +180,7 @@ def autocovariance(spec: LineSpecLike, roller: int, lags: int) -> np.ndarray:
     return scipy.fft.irfft(power, points, norm="forward")[:lags]
 
 
-def spectrum_bands(spec: LineSpecLike, roller: int, bands: int) -> tuple[np.ndarray, np.ndarray]:
+def spectrum_bands(spec: LineSpecLike, roller: int, bands: int) -> Pair:
     """Mean density of a line's spectrum over bands of equal logarithmic width.
 
     Parameters
@@ -187,14 +197,13 @@ def spectrum_bands(spec: LineSpecLike, roller: int, bands: int) -> tuple[np.ndar
     density : numpy.ndarray
         Shape (bands,), m^3, one-sided; NaN where a band has no wave.
     """
-    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    waves, powers = wave_powers(spec, roller)
     step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
-    waves = step * np.arange(first_wave, first_wave + amplitudes.size)
     edges = np.geomspace(waves[0] - 0.5 * step, waves[-1] + 0.5 * step, bands + 1)
     inside = np.digitize(waves, edges) - 1
-    counts, power = (np.bincount(inside, each, bands) for each in (None, amplitudes**2))
+    counts, power = (np.bincount(inside, each, bands) for each in (None, powers))
     with np.errstate(invalid="ignore"):
-        density = power / (2.0 * step * counts)
+        density = power / (step * counts)
     return np.sqrt(edges[1:] * edges[:-1]), density
 
 

@@ -26,6 +26,7 @@ import scipy.fft
 from lube.kernels.synthesis import gaussian_phasors, random_phasors, translated_steps
 from lube.surfaces.lay import waves_of_line
 from lube.surfaces.translation import REACH, gaussian_power, johnson_curve
+from lube.types import Array, Pair
 
 ROLLER_NUMBERS = (1, 2)
 """Labels of the two rollers in files."""
@@ -58,7 +59,7 @@ class LineSpecLike(Protocol):
     height_step: float
 
 
-def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
+def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, Array]:
     r"""Amplitudes of the waves around one roller (paper, section 2).
 
     .. math::
@@ -106,7 +107,7 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     return first_wave, np.sqrt(squares)
 
 
-def amplitudes_across_lay(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
+def amplitudes_across_lay(spec: LineSpecLike, roller: int) -> tuple[int, Array]:
     """Amplitudes of the waves across the lay of one roller's surface, as from `wave_amplitudes`.
 
     Without a lay they are those of the line.
@@ -122,9 +123,11 @@ def amplitudes_across_lay(spec: LineSpecLike, roller: int) -> tuple[int, np.ndar
     first_wave = int(np.ceil(line.q_min * turn * (1.0 - 1e-9)))
     last_wave = min(int(np.floor(line.q_max * turn * (1.0 + 1e-9))), last_wave)
     waves = np.arange(first_wave, last_wave + 1)
-    shape = (
-        _self_affine(line, waves, turn) if line.spectrum is None else _measured(line, waves / turn)
-    )
+    if line.spectrum is None:
+        shape = _self_affine(line, waves, turn)
+    else:  # the measured density is a power law between its values
+        known, density = np.log(line.spectrum)
+        shape = np.exp(0.5 * np.interp(np.log(waves / turn), known, density))
     rms = np.sqrt(0.5 * np.sum(shape**2))
     return first_wave, line.rms_height / rms * shape
 
@@ -143,18 +146,11 @@ def _measured_steps(line):
     return np.frombuffer(line.heights, np.int32)
 
 
-def _measured(line, wave_vector):
-    """Square root of the measured density, a power law between its values."""
-    known, density = np.log(line.spectrum)
-    return np.exp(0.5 * np.interp(np.log(wave_vector), known, density))
-
-
 @functools.lru_cache(maxsize=4)
 def _spectrum(spec, roller):
     """Amplitudes scaled for the inverse real FFT, in height steps, single precision."""
     first_wave, amplitudes = wave_amplitudes(spec, roller)
-    points = spec.points[roller]
-    scaled = 0.5 * points / spec.height_step * amplitudes
+    scaled = 0.5 * spec.points[roller] / spec.height_step * amplitudes
     return first_wave, scaled.astype(np.float32)
 
 
@@ -169,7 +165,7 @@ def _translation(spec, roller):
     return (first_wave, scaled.astype(np.float32)), curve
 
 
-def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> np.ndarray:
+def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> Array:
     """Draw one roughness line, or return the measured one.
 
     Parameters
@@ -198,9 +194,7 @@ def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> 
     return translated_steps(gaussian, curve, REACH, line.rms_height / spec.height_step)
 
 
-def draw_gaussian_line(
-    spec: LineSpecLike, roller: int, generator: np.random.Generator
-) -> np.ndarray:
+def draw_gaussian_line(spec: LineSpecLike, roller: int, generator: np.random.Generator) -> Array:
     """Draw one line with random amplitudes, which is exactly Gaussian.
 
     Parameters
@@ -229,9 +223,7 @@ def _superposition(spectrum, points, phasors, generator):
     return scipy.fft.irfft(waves, points, overwrite_x=True)
 
 
-def draw_realisation(
-    spec: LineSpecLike, seed: int, realisation: int
-) -> tuple[np.ndarray, np.ndarray]:
+def draw_realisation(spec: LineSpecLike, seed: int, realisation: int) -> Pair:
     """Draw the two independent lines of one realisation.
 
     Parameters

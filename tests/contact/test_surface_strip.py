@@ -217,7 +217,7 @@ def test_breakthrough_is_no_more_likely_than_contact(study, make_spec, monkeypat
     found = surface_contact(RoughPair(make_spec(30_000), 10e-3, layer, SEED), film)
     assert found["breakthrough_probability"] > 0.0
     for end in LIMITS:
-        geometric, breakthrough = (found[f"{name}{end}"] for name in surface_strip._NUMBERS)
+        geometric, breakthrough = (found[f"{name}{end}"] for name in surface_strip._COUNTS)
         assert breakthrough <= geometric
 
 
