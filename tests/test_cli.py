@@ -8,6 +8,7 @@ import sys
 import pytest
 
 import lube
+import lube.archive
 from lube.cli import main
 
 
@@ -61,6 +62,8 @@ def test_the_bare_command_helps(capsys):
 
 
 def test_a_command_that_needs_the_workflow_says_how_to_install_it(monkeypatch, capsys):
+    # `lube` itself also holds the package, and has the old one again afterwards.
+    monkeypatch.setattr(lube, "archive", lube.archive)
     for name in [name for name in sys.modules if name.startswith("lube.archive")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "yaml", None)

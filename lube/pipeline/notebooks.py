@@ -42,6 +42,9 @@ _ADDED = {_INJECTED, "papermill-error-cell-tag"}
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _CAUSE = re.compile(r"The above exception was the direct cause|During handling of the above")
 
+_FOLDER = re.compile(r"\S*/ipykernel_\d+/(?=\d+\.py)")
+"""Folder of the file by which a warning names a cell; it has the number of the process."""
+
 
 def execute_notebook(
     notebook: str | Path,
@@ -205,9 +208,9 @@ def _tags(cell):
 def _save(executed, path):
     """Write an executed notebook, the same bytes each time.
 
-    Papermill's clock times and random cell names are removed, and so is the cell with this run's
-    paths: without it the copy, opened and run by hand, shows the study in whose folder it lies, and
-    writes nothing.
+    Papermill's clock times and random cell names are removed, the process number in warnings too,
+    and the cell with this run's paths: without it the copy, opened and run by hand, shows the study
+    in whose folder it lies, and writes nothing.
     """
     executed.metadata.pop("papermill", None)
     executed.cells = [cell for cell in executed.cells if _INJECTED not in _tags(cell)]
@@ -215,5 +218,8 @@ def _save(executed, path):
         cell.metadata.pop("papermill", None)
         cell.metadata.pop("execution", None)
         cell.id = f"cell-{number}"
+        for output in cell.get("outputs", ()):
+            if output.output_type == "stream":
+                output.text = _FOLDER.sub("", output.text)
     with written_whole(path) as part:
         nbformat.write(executed, part)

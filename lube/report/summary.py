@@ -200,7 +200,7 @@ def _spread(film, contact, first):
     films = film["film_thickness"].sel(film_formula=central)
     valid = films.where(film["in_validity_range"].sel(film_formula=central).astype(bool))
     mean = contact["breakthrough_probability_mean"]
-    most = mean.sel(first, drop=True)
+    most = mean.sel(first, drop=True).fillna(0.0)  # not known where the film is not
     there = mean.isel(most.argmax(most.dims)).sel(film_formula=central)
     return {
         "formulas": central.size,

@@ -62,6 +62,16 @@ def test_a_notebook_is_executed_with_its_parameters_twice_the_same(write, output
     nbformat.validate(nbformat.read(output, as_version=4))
 
 
+def test_a_cell_is_named_without_the_number_of_the_process(write, output):
+    """As in a warning, which begins with the path of the code."""
+    notebook, copies = write("import sys", "print(sys._getframe().f_code.co_filename)"), []
+    for _ in range(2):
+        execute_notebook(notebook, output, {}, "")
+        copies.append(output.read_bytes())
+    assert copies[0] == copies[1]
+    assert outputs_of(output)[0].text.removesuffix(".py\n").isdigit()
+
+
 def test_all_kinds_of_output_are_kept_in_order(write, output):
     code = """
 import sys, time

@@ -186,6 +186,15 @@ def test_points_at_which_the_model_does_not_hold_are_stated(study, results):
     assert "At 8 of the 16 operating points contact is less frequent than at a thicker film" in text
 
 
+def test_a_formula_whose_film_is_known_nowhere_leaves_the_others(study, results):
+    film, contact = results["film"].copy(deep=True), results["contact"].copy(deep=True)
+    for values in (*film.values(), *contact.values()):
+        if "film_formula" in values.dims and values.dtype == float:
+            values.loc[{"film_formula": "paper"}] = np.nan
+    text = findings(study, results | {"film": film, "contact": contact})
+    assert "The 2 formulas of the central film" in text
+
+
 def test_points_whose_roughness_is_not_answered_linearly_are_counted(study, results):
     assert "linear response" not in findings(study, results)
     slips = results["contact"]["slide_to_roll_ratio"]
