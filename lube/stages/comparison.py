@@ -249,8 +249,8 @@ def _ranges_of_lines(table):
     by_formula = table["breakthrough_probability"].values.swapaxes(0, 1)
     scatter, pair = table["scatter_ratio"].values, table["pair"].to_series().factorize()[0]
     for row, (members, ratio) in enumerate(zip(by_formula, scatter, strict=True)):
-        known = measured & np.isfinite(members).all(axis=0)
-        if len(members) > 2 and known.any():
+        if len(members) > 2:
+            known = measured & np.isfinite(members).all(axis=0)
             of_known = windows[known], ratio[known], pair[known]
             ranges[row] = _left_out(members[:, known], *of_known)
     return ranges
@@ -258,18 +258,16 @@ def _ranges_of_lines(table):
 
 def _ranges_of_surfaces(table, surfaces, seed):
     """As `_ranges_of_lines`, of drawn records."""
-    ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
-    measured = np.isfinite(table["measured_share"].values)
-    drawn = pair_shares(surfaces, table["pair"], seed)
+    measured, ranges = np.isfinite(table["measured_share"].values), []
+    drawn = pair_shares(surfaces, table["pair"], seed).swapaxes(0, 1)
     names = "breakthrough_probability", "sample_size"
     ratio, known = surfaces["scatter_ratio"].values, (surfaces[name].values for name in names)
-    for row, (mean, size) in enumerate(zip(*known, strict=True)):
+    for mean, size, shares in zip(*known, drawn, strict=True):
         some = measured & np.isfinite(mean)
-        if some.any():
-            limits = prediction_limits(mean, size, ratio, SURFACES, mean_error=0.0)
-            sides = [each[some] for each in (mean, *limits)]
-            ranges[row] = _range([agreement(*sides, each[some]) for each in drawn[:, row]])
-    return ranges
+        limits = prediction_limits(mean, size, ratio, SURFACES, mean_error=0.0)
+        sides = [each[some] for each in (mean, *limits)]
+        ranges.append(_range([agreement(*sides, each[some]) for each in shares]))
+    return np.array(ranges)
 
 
 def _range(rows):

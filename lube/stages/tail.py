@@ -320,10 +320,15 @@ def _in_a_revolution(spec, film, runs, of_pairs):
     points = spec.points[0]
     width = 2.0 * film["contact_half_width"]
     windows = independent_windows(points * spec.spacing, width, spec.longest_wavelength)
-    groups = runs.isel(outcome=2, drop=True) * points
+    found = pair_limits(of_pairs.assign(groups=runs.isel(outcome=2, drop=True) * points))
+    seen = _seen_groups(found, windows)
+    # Groups of breakthroughs come independently of one another. Where contact is so frequent that
+    # hardly any group ends, they are fewer than the independent windows with a breakthrough, which
+    # are counted instead.
+    groups = {end: np.maximum(found[f"groups{end}"], seen[end]) for end in LIMITS}
     steps = _first_breakthrough(runs.mean("pair"), _window_points(spec, film), points)
-    shares = _touching_pairs(groups, of_pairs, windows)
-    return shares | {"first_breakthrough_time": spec.spacing / film["entrainment_speed"] * steps}
+    time = spec.spacing / film["entrainment_speed"] * steps
+    return _pair_shares(groups) | {"first_breakthrough_time": time}
 
 
 def _window_points(spec, film):
@@ -349,18 +354,6 @@ def _sampled(spec, film, windows, slips, seed, pairs, threads=None):
     )
     contact, breakthrough = windows.transpose("outcome", ...)
     return xr.Dataset(dict(zip(PROBABILITIES, (breakthrough, contact), strict=True))), runs
-
-
-def _touching_pairs(groups, of_pairs, windows):
-    """Fraction of pairs with a breakthrough in a revolution, and its limits.
-
-    Groups of breakthroughs come independently of one another. Where contact is so frequent that
-    hardly any group ends, they are fewer than the independent windows with a breakthrough, which
-    are counted instead.
-    """
-    found = pair_limits(of_pairs.assign(groups=groups))
-    seen = _seen_groups(found, windows)
-    return _pair_shares({end: np.maximum(found[f"groups{end}"], seen[end]) for end in LIMITS})
 
 
 def _first_breakthrough(runs, points, revolution):
