@@ -18,6 +18,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import speed_ratios
+from lube.grid.gap import Gap
 from lube.inference.surface_scatter import revolution_size, surface_prediction, surface_scatter
 from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
@@ -153,15 +154,9 @@ def contact_probability(
     True
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of(
-        film_shape,
-        roughness_deformation,
-        contact_model,
-        inlet_shear_heating,
-        inlet_meniscus,
-        load_sharing,
-    )
-    pair = rollers.rough_pair(seed, choices.gap)
+    gap = Gap(film_shape, roughness_deformation)
+    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus, load_sharing)
+    pair = rollers.rough_pair(seed, gap)
     check_realisations(realisations, seed)
     assumed = Assumptions(bands, rollers, oil, choices, formula_names(film_formula)[0], seed)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
