@@ -251,8 +251,7 @@ def _ranges_of_lines(table):
     for row, (members, ratio) in enumerate(zip(by_formula, scatter, strict=True)):
         if len(members) > 2:
             known = measured & np.isfinite(members).all(axis=0)
-            of_known = windows[known], ratio[known], pair[known]
-            ranges[row] = _left_out(members[:, known], *of_known)
+            ranges[row] = _left_out(members[:, known], windows[known], ratio[known], pair[known])
     return ranges
 
 

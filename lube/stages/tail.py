@@ -111,8 +111,7 @@ def _by_model(study, film, lines, areal):
     found = xr.concat([tables[name] for name in models], levels, join="exact")
     if study.gap.is_answered:
         found = found.assign(surface_rms_deformation=areal["surface_rms_deformation"])
-    deviation = _in_pure_rolling(areal["pair_deviation"])
-    return found.assign(surface_pair_deviation=deviation, **theory)
+    return found.assign(surface_pair_deviation=_in_pure_rolling(areal["pair_deviation"]), **theory)
 
 
 def _on_surfaces(study, speed, areal):
@@ -146,11 +145,9 @@ def surface_rates(surfaces: xr.Dataset, speed: xr.DataArray) -> dict[str, xr.Dat
         (s).
     """
     passage = surfaces["passage_width"]
-    rates = {
-        f"breakthrough_rate{end}": surfaces[f"breakthroughs{end}"] * speed / passage
-        for end in LIMITS
-    }
-    return rates | {"breakthrough_duration": passage / speed}
+    rates = (surfaces[f"breakthroughs{end}"] * speed / passage for end in LIMITS)
+    found = values_with_limits("breakthrough_rate", rates)
+    return found | {"breakthrough_duration": passage / speed}
 
 
 def _by_groups(found, passages, revolution):
@@ -169,10 +166,9 @@ def _by_groups(found, passages, revolution):
 
 def _seen_groups(found, windows):
     """Find how many groups of breakthroughs are expected in some independent windows."""
+    probability = {end: found[f"breakthrough_probability{end}"] for end in LIMITS}
     with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
-        return {
-            end: -windows * np.log1p(-found[f"breakthrough_probability{end}"]) for end in LIMITS
-        }
+        return {end: -windows * np.log1p(-each) for end, each in probability.items()}
 
 
 def _pair_shares(groups):
@@ -398,8 +394,7 @@ def _asymptotes(spec, film, boundary_layer, gap):
     The boundary layer breaks if the summit that follows is sharp enough.
     """
     if gap.is_answered:  # the moments change along the window
-        unknown = xr.full_like(film["film_thickness"], np.nan)
-        return dict.fromkeys(_ASYMPTOTES, unknown)
+        return dict.fromkeys(_ASYMPTOTES, xr.full_like(film["film_thickness"], np.nan))
     strength = boundary_layer.critical_thickness, boundary_layer.shear_strength
     curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
     moments = pair_moments(spec)
