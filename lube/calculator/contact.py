@@ -164,15 +164,13 @@ def contact_probability(
     found = of_film(table)
     if "line" in choices.models:
         contact = ensemble(pair, table, realisations, slip)
-        on_pairs = pair_probabilities(pair, table, slip)
-        found = joined(table, contact, on_pairs)
+        found = joined(table, contact, pair_probabilities(pair, table, slip))
     if "surface" in choices.models:
         found = found.assign(of_surface(pair, table, slip))
     if "surface_load_share" in table:
         found["surface_load_share"] = table["surface_load_share"]
     if assumed.wanted:
-        points = conditions_of(table) | {"slide_to_roll_ratio": slip}
-        samples = assumed.probabilities(points)
+        samples = assumed.probabilities(conditions_of(table) | {"slide_to_roll_ratio": slip})
         found = found.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
     return with_remarks(found, table, rollers)
 

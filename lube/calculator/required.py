@@ -345,8 +345,7 @@ def required_roughness(
         return scaled_film(film, xr.DataArray(ratios / own, dims="film"))
 
     def points_at(ratios):
-        factor = xr.DataArray(own / ratios, dims="film")
-        return conditions_of(film) | {"roughness_factor": factor}
+        return conditions_of(film) | {"roughness_factor": xr.DataArray(own / ratios, dims="film")}
 
     found = search.films(film["contact_half_width"].item(), points_at, table_at, own=own)
     ratios = found["lambda_ratio"]
@@ -370,8 +369,7 @@ class _Thicker:
         """Properties as from `Oil.at`, over the factor too."""
         properties = self.oil.at(temperature)
         viscosity = properties["dynamic_viscosity"] * self.factor
-        known = viscosity.where(viscosity > ROELANDS_VISCOSITY)
-        return properties.assign(dynamic_viscosity=known)
+        return properties.assign(dynamic_viscosity=viscosity.where(viscosity > ROELANDS_VISCOSITY))
 
 
 def _labelled(found):
