@@ -132,7 +132,7 @@ def _whole_turns(study, slip):
 
 def _revolutions(study, windows, slip, turns, rolling):
     """Share of every realisation in some revolutions, shape (R, P)."""
-    if (slip == 0.0 and turns == 1.0) or not windows.size:
+    if slip == 0.0 and turns == 1.0:
         return rolling
     shares = np.empty((min(len(rolling), MOST_PAIRS), windows.size))
     for realisation, row in enumerate(shares):

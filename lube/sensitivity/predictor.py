@@ -10,7 +10,7 @@ from lube.digits import six_digits
 from lube.errors import DataError
 from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
-from lube.sensitivity.runs import SEEDS, Model, is_sum, models
+from lube.sensitivity.runs import SEEDS, Model, is_chosen, is_sum, models
 from lube.sensitivity.samples import deviations, over_run, quantiles
 from lube.sensitivity.shape import EffectiveRatio
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
@@ -231,16 +231,6 @@ def _of_model(runs, model):
     """Select the runs of a model."""
     same = [runs[name].values == choice for name, choice in model._asdict().items()]
     return runs.isel(run=np.all(same, axis=0))
-
-
-def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> Array:
-    """Find which of some samples choose a model; `numbers` are their deviations."""
-    chosen = np.ones(count, bool)
-    for name, choice in model._asdict().items():
-        if name in numbers:
-            choices = getattr(deviating.study.uncertainty, name).choices
-            chosen &= numbers[name] == choices.index(choice)
-    return chosen
 
 
 def _film(deviating, runs):

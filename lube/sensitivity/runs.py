@@ -93,6 +93,16 @@ def is_sum(deviating: Deviating, model: Model) -> bool:
     return model.contact_model == "surface" and others > 1 and len(nearer) == 2**others - 1
 
 
+def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> Array:
+    """Find which of some samples choose a model; `numbers` are their deviations."""
+    chosen = np.ones(count, bool)
+    for name, choice in model._asdict().items():
+        if name in numbers:
+            choices = getattr(deviating.study.uncertainty, name).choices
+            chosen &= numbers[name] == choices.index(choice)
+    return chosen
+
+
 def _sizes(deviating, model):
     if is_sum(deviating, model):
         return SIZES["sum"]
@@ -203,6 +213,38 @@ def run(
         on_threads(of_sample, of_samples, threads, "direct runs")
     known = np.where(found > 0.0, found, np.nan)
     return joined(films).assign(breakthrough_probability=(("run", "seed"), known))
+
+
+def run_all(deviating: Deviating, unit: Array, points: xr.Dataset) -> Array:
+    """Compute the probability of breakthrough for some samples, each at all operating points.
+
+    Parameters
+    ----------
+    deviating : Deviating
+        The study.
+    unit : numpy.ndarray
+        Samples of all factors, from 0 to 1, shape (samples, factors).
+    points : xarray.Dataset
+        Operating points as in `run`, over point.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples, points), by the model that each sample chooses; NaN where its film is not
+        known.
+    """
+    number = points.sizes["point"]
+    samples = np.repeat(unit, number, axis=0)
+    runs = points.isel(point=np.tile(np.arange(number), len(unit))).rename(point="run")
+    values, found = deviations(deviating.factors, samples), np.full(len(samples), np.nan)
+    for model in models(deviating):
+        some = np.flatnonzero(is_chosen(deviating, model, values, len(samples)))
+        if some.size:
+            table = run(deviating, model, samples[some], runs.isel(run=some))
+            # Without a value where the layer holds in all contacts that were sampled.
+            probability = table["breakthrough_probability"].fillna(0.0).mean("seed").clip(max=1.0)
+            found[some] = probability.where(table["film_thickness"].notnull()).values
+    return found.reshape(len(unit), number)
 
 
 def _same_samples(unit):

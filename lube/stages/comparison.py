@@ -92,16 +92,12 @@ def compare(
         contradict each other.
     """
     table = _table(model, experiment).set_coords([*AT_RECORDS, "origin"])
-    sides = {}
+    tables = {}
     if "realisation" in table.dims:
-        sides["line"] = _of_lines(table), _ranges_of_lines(table)
+        tables["line"] = _judged(table, experiment, _of_lines(table), _ranges_of_lines(table))
     if surfaces is not None:
         ranges = _ranges_of_surfaces(table, surfaces, seed)
-        sides["surface"] = _of_surfaces(table, surfaces), ranges
-    tables = {}
-    for contact_model, (of_model, ranges) in sides.items():
-        found = _judged(table, experiment, of_model) | _expected(ranges)
-        tables[contact_model] = table.assign(with_dims("comparison", found))
+        tables["surface"] = _judged(table, experiment, _of_surfaces(table, surfaces), ranges)
     first = next(iter(tables.values()))
     notes = {"missing": _missing(first, levels), "remarks": _contradictions(first)}
     for lines in notes.values():
@@ -142,18 +138,20 @@ def _of_surfaces(table, surfaces):
     return limits, surface_prediction(limits, size, ratio, table["share_error"].values)
 
 
-def _judged(table, experiment, sides):
-    """Values of one contact model at the records, figures of agreement and means at levels."""
+def _judged(table, experiment, sides, ranges):
+    """Add values of one contact model, figures of agreement and means at levels to the table."""
     limits, (lower, upper) = sides
     measured = table["measured_share"].values
-    return {
+    found = {
         **values_with_limits("simulated_probability", limits),
         "predicted_share_lower": lower,
         "predicted_share_upper": upper,
         "within_prediction": (measured >= lower) & (measured <= upper),
         **_agreement((limits[0], lower, upper), experiment),
         **_level_means(table, limits[0]),
+        **_expected(ranges),
     }
+    return table.assign(with_dims("comparison", found))
 
 
 def _agreement(values, experiment):

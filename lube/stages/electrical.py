@@ -152,7 +152,7 @@ def _discharges(study, film, rigs, threads, surfaces):
         return windows.on_pairs(study.line_spec, study.seed, PAIRS, threads)[:, 0].mean(axis=0)
 
     gaps = [rig.bias_voltage / rig.dielectric_strength for rig in rigs.values()]
-    found = {gap: touching(gap) for gap in (0.0, *gaps)}
+    found = {gap: touching(gap) for gap in {0.0, *gaps}}
     # Few contacts more may come out as fewer, since both shares are estimates.
     each = [np.maximum(found[gap] - found[0.0], 0.0) for gap in gaps]
     sizes = [film.sizes[name] for name in POINT_DIMS]

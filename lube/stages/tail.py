@@ -9,7 +9,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.windows import FLATTENED, ContactWindows, study_windows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
-from lube.grid.operating_points import surface_speeds
+from lube.grid.operating_points import over_contact_models, surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, mean_interval
@@ -102,16 +102,13 @@ def _on_lines(study, film, threads):
 
 def _by_model(study, film, lines, areal):
     """Variables of lines and of surfaces over contact_model; the theory is for lines."""
-    theory, lines = lines[list(_ASYMPTOTES)], lines.drop_vars(_ASYMPTOTES)
     known = _on_surfaces(study, film["entrainment_speed"], areal.drop_attrs())
-    surfaces = {name: known[name].transpose(*lines[name].dims) for name in lines}
+    surfaces = {name: known[name].transpose(*lines[name].dims) for name in known}
     tables = {"line": lines, "surface": lines.assign(surfaces)}
-    models = list(study.contact_model)
-    levels = xr.DataArray(models, dims="contact_model", name="contact_model")
-    found = xr.concat([tables[name] for name in models], levels, join="exact")
+    found = over_contact_models("tail", {name: tables[name] for name in study.contact_model})
     if study.gap.is_answered:
-        found = found.assign(surface_rms_deformation=areal["surface_rms_deformation"])
-    return found.assign(surface_pair_deviation=_in_pure_rolling(areal["pair_deviation"]), **theory)
+        found["surface_rms_deformation"] = areal["surface_rms_deformation"]
+    return found.assign(surface_pair_deviation=_in_pure_rolling(areal["pair_deviation"]))
 
 
 def _on_surfaces(study, speed, areal):

@@ -8,11 +8,10 @@ interpolation.
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from lube.statistics.one_pair import quantile, standard_error
-from lube.types import Array
+from lube.types import Array, Values
 
 FINER = 8
 """Levels of a curve of contacts for each film at which the probability is known."""
@@ -50,7 +49,7 @@ class Curve:
     sample_size: Array
     peak: int = 0
 
-    def logit_at(self, films: npt.ArrayLike) -> Array:
+    def logit_at(self, films: Values) -> Array:
         """Logit of the probability at given films, extrapolated linearly beyond the ends.
 
         Parameters
