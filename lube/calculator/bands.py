@@ -141,6 +141,7 @@ class Assumptions:
         """
         # These are slow to import.
         from lube.sensitivity.conditions import Deviating
+        from lube.sensitivity.runs import run_all
         from lube.sensitivity.samples import quantiles
 
         points = dict(zip(points, xr.broadcast(*map(xr.DataArray, points.values())), strict=True))
@@ -150,7 +151,7 @@ class Assumptions:
         runs["lubricant"] = "point", np.full(force.size, study.lubricants[0].name)
         count = SAMPLES[study.contact_model[0]]
         unit = quantiles(count, len(deviating.factors), study.seed)
-        found = _probabilities(deviating, unit, runs).reshape(count, *force.shape)
+        found = run_all(deviating, unit, runs).reshape(count, *force.shape)
         return force.expand_dims(sample=count).copy(data=found)
 
     @staticmethod
@@ -160,24 +161,3 @@ class Assumptions:
 
         limits = zip(LIMITS[1:], np.quantile(samples, BAND, axis=0), strict=True)
         return {f"{name}{end}": samples[0].copy(data=limit) for end, limit in limits}
-
-
-def _probabilities(deviating, unit, points):
-    """Probability of breakthrough of all samples at some points, shape (samples, points)."""
-    from lube.sensitivity.predictor import is_chosen
-    from lube.sensitivity.runs import models, run
-    from lube.sensitivity.samples import deviations
-
-    number = points.sizes["point"]
-    samples = np.repeat(unit, number, axis=0)
-    runs = points.isel(point=np.tile(np.arange(number), len(unit))).rename(point="run")
-    values, found = deviations(deviating.factors, samples), np.full(len(samples), np.nan)
-    for model in models(deviating):
-        some = np.flatnonzero(is_chosen(deviating, model, values, len(samples)))
-        if some.size:
-            table = run(deviating, model, samples[some], runs.isel(run=some))
-            # Without a value where the layer holds in all contacts that were sampled.
-            probability = table["breakthrough_probability"].fillna(0.0).mean("seed").clip(max=1.0)
-            probability = probability.where(table["film_thickness"].notnull())
-            found[some] = probability.values
-    return found.reshape(len(unit), number)

@@ -76,8 +76,7 @@ class Choices:
     @classmethod
     def of(
         cls,
-        film_shape: FilmShape = "flat",
-        roughness_deformation: RoughnessDeformation = "none",
+        gap: Gap = PLAIN,
         contact_model: ContactModel | Sequence[ContactModel] = "line",
         inlet_shear_heating: InletHeating = "none",
         inlet_meniscus: OneAmount | None = None,
@@ -90,16 +89,15 @@ class Choices:
         StudyError
             If a study has no such choice.
         """
-        gap = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
         film = {"load_sharing": load_sharing, "inlet_shear_heating": inlet_shear_heating}
-        for name, value in (gap | film).items():
+        for name, value in (vars(gap) | film).items():
             _check_choice(name, value, get_args(Study.model_fields[name].annotation))
         models = tuple(np.ravel(contact_model).tolist())
         for model in models or [contact_model]:
             _check_choice("contact_model", model, get_args(ContactModel))
         if inlet_meniscus is not None:
             inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
-        return cls(Gap(**gap), models, **film, inlet_meniscus=inlet_meniscus)
+        return cls(gap, models, **film, inlet_meniscus=inlet_meniscus)
 
     @classmethod
     def of_smooth_rollers(

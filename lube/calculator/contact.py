@@ -18,6 +18,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import speed_ratios
+from lube.grid.gap import Gap
 from lube.inference.surface_scatter import revolution_size, surface_prediction, surface_scatter
 from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
@@ -153,15 +154,9 @@ def contact_probability(
     True
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of(
-        film_shape,
-        roughness_deformation,
-        contact_model,
-        inlet_shear_heating,
-        inlet_meniscus,
-        load_sharing,
-    )
-    pair = rollers.rough_pair(seed, choices.gap)
+    gap = Gap(film_shape, roughness_deformation)
+    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus, load_sharing)
+    pair = rollers.rough_pair(seed, gap)
     check_realisations(realisations, seed)
     assumed = Assumptions(bands, rollers, oil, choices, formula_names(film_formula)[0], seed)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
@@ -169,15 +164,13 @@ def contact_probability(
     found = of_film(table)
     if "line" in choices.models:
         contact = ensemble(pair, table, realisations, slip)
-        on_pairs = pair_probabilities(pair, table, slip)
-        found = joined(table, contact, on_pairs)
+        found = joined(table, contact, pair_probabilities(pair, table, slip))
     if "surface" in choices.models:
         found = found.assign(of_surface(pair, table, slip))
     if "surface_load_share" in table:
         found["surface_load_share"] = table["surface_load_share"]
     if assumed.wanted:
-        points = conditions_of(table) | {"slide_to_roll_ratio": slip}
-        samples = assumed.probabilities(points)
+        samples = assumed.probabilities(conditions_of(table) | {"slide_to_roll_ratio": slip})
         found = found.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
     return with_remarks(found, table, rollers)
 

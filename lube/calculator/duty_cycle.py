@@ -19,6 +19,7 @@ from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import with_pair_limits
 from lube.errors import DataError, located, right_one, shown
+from lube.grid.gap import Gap
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
@@ -133,14 +134,8 @@ def duty(
     share = columns.get("share", xr.ones_like(columns["force"]))
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
-    choices = Choices.of(
-        film_shape,
-        roughness_deformation,
-        contact_model,
-        inlet_shear_heating,
-        inlet_meniscus,
-        load_sharing,
-    )
+    gap = Gap(film_shape, roughness_deformation)
+    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus, load_sharing)
     check_realisations(realisations, seed)
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
     assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)
@@ -150,7 +145,7 @@ def duty(
     table = film_of_oil(oil, turning, given, [formula], **film_model(rollers, choices, slip))
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     table = table.assign(force=given["force"])
-    pair = rollers.rough_pair(seed, choices.gap)
+    pair = rollers.rough_pair(seed, gap)
     share, parts, whole = share / share.sum(), of_film(table), {}
     if "line" in choices.models:
         contact = ensemble(pair, table, realisations, 0.0)

@@ -93,8 +93,7 @@ def _each_by_name(found):
     for name, values in found.items():
         by = {"load_share_curve", "resistance_formula"}.intersection(values.dims)
         if by:
-            each = values.to_dataset(*by).items()
-            flat |= {variable_of(name, one): value for one, value in each}
+            flat |= {variable_of(name, one): value for one, value in values.to_dataset(*by).items()}
         else:
             flat[name] = values
     return flat

@@ -11,6 +11,7 @@ from lube.calculator.rollers import Rollers
 from lube.contact.rough_pair import roughness_batch
 from lube.contact.surface_trace import surface_traces
 from lube.errors import RangeError
+from lube.grid.gap import Gap
 from lube.physics.electrical import contact_resistance
 from lube.schema import OPERATING_DIMS, POINT_DIMS
 from lube.stages.film import film_table
@@ -70,25 +71,19 @@ def trace(
     '120 ms'
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of(
-        film_shape,
-        roughness_deformation,
-        one_name("contact_model", contact_model),
-        inlet_shear_heating,
-        inlet_meniscus,
-    )
+    gap, model = Gap(film_shape, roughness_deformation), one_name("contact_model", contact_model)
+    choices = Choices.of(gap, model, inlet_shear_heating, inlet_meniscus)
     formula = one_name("film_formula", film_formula)
     one = _one_point(rollers, oil, force, speed, temperature)
     if contact_model == "surface":
         film = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
-        return _surface_trace(rollers, film, rollers.rough_pair(seed, choices.gap), slip)
+        return _surface_trace(rollers, film, rollers.rough_pair(seed, gap), slip)
     check_contact(rollers, rollers.pair.contact_half_width(*one[2]), choices)
     model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}
     table = film_table(*one, [formula], **model)
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     lines = roughness_batch(rollers.lines, seed, [0])
-    layer, resistivity = rollers.layer, rollers.resistivity
-    found = contact_trace(lines, table, [point], layer, resistivity, choices.gap)
+    found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity, gap)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
     return described(found[names].isel(operating_point=0).drop_attrs())
 

@@ -17,6 +17,7 @@ from lube.contact.surface_strip import SURFACES, surface_contact
 from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, right_one
 from lube.grid.discretise import speed_ratios
+from lube.grid.gap import Gap
 from lube.grid.operating_points import surface_speeds
 from lube.inference.planning import (
     QUANTITIES,
@@ -115,14 +116,13 @@ def plan(
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else ["line", model]
-    choices = Choices.of(
-        film_shape, roughness_deformation, models, inlet_shear_heating, inlet_meniscus
-    )
+    gap = Gap(film_shape, roughness_deformation)
+    choices = Choices.of(gap, models, inlet_shear_heating, inlet_meniscus)
     check_realisations(realisations, seed)
     formula = one_name("film_formula", film_formula)
     table = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
-    reading = _reading_error(rollers, table, choices.gap, slip, rig, thresholds.values, seed)
-    records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, choices.gap)
+    reading = _reading_error(rollers, table, gap, slip, rig, thresholds.values, seed)
+    records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, gap)
     if model == "surface":
         contact = surface_contact(pair, table)
         found, size, ratio = on_surfaces(pair, table, contact, slip, records)

@@ -22,6 +22,7 @@ from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.ehl.film_formulas import formula
 from lube.grid.film_profiles import scaled_film
+from lube.grid.gap import Gap
 from lube.physics.pressure_laws import ROELANDS_VISCOSITY
 from lube.schema import LIMITS, values_with_limits
 from lube.types import ContactModel, FilmShape, InletHeating, OneAmount, RoughnessDeformation
@@ -158,9 +159,8 @@ def required_viscosity(
         found = film_in_si(rollers, thicker, force, speed, temperature, one, choices)
         return found.assign_coords(viscosity_factor=("factor", factors))
 
-    choices = Choices.of(
-        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    )
+    gap = Gap(film_shape, roughness_deformation)
+    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
     search = FilmSearch(assumed, share, realisations)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
@@ -218,9 +218,8 @@ def required_speed(
     def table(speeds, choices):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
 
-    choices = Choices.of(
-        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    )
+    gap = Gap(film_shape, roughness_deformation)
+    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
     search = FilmSearch(assumed, share, realisations)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
@@ -276,9 +275,8 @@ def required_temperature(
     def table(temperatures, choices):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
 
-    choices = Choices.of(
-        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    )
+    gap = Gap(film_shape, roughness_deformation)
+    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
     search = FilmSearch(assumed, share, realisations)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
@@ -334,9 +332,8 @@ def required_roughness(
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
     one = one_name("film_formula", film_formula)
-    choices = Choices.of(
-        film_shape, roughness_deformation, contact_model, inlet_shear_heating, inlet_meniscus
-    )
+    gap = Gap(film_shape, roughness_deformation)
+    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus)
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
     search = FilmSearch(assumed, share, realisations)
     film = film_in_si(rollers, oil, force, speed, temperature, one, choices)
@@ -348,8 +345,7 @@ def required_roughness(
         return scaled_film(film, xr.DataArray(ratios / own, dims="film"))
 
     def points_at(ratios):
-        factor = xr.DataArray(own / ratios, dims="film")
-        return conditions_of(film) | {"roughness_factor": factor}
+        return conditions_of(film) | {"roughness_factor": xr.DataArray(own / ratios, dims="film")}
 
     found = search.films(film["contact_half_width"].item(), points_at, table_at, own=own)
     ratios = found["lambda_ratio"]
@@ -373,8 +369,7 @@ class _Thicker:
         """Properties as from `Oil.at`, over the factor too."""
         properties = self.oil.at(temperature)
         viscosity = properties["dynamic_viscosity"] * self.factor
-        known = viscosity.where(viscosity > ROELANDS_VISCOSITY)
-        return properties.assign(dynamic_viscosity=known)
+        return properties.assign(dynamic_viscosity=viscosity.where(viscosity > ROELANDS_VISCOSITY))
 
 
 def _labelled(found):

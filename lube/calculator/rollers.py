@@ -13,7 +13,6 @@ from lube.study.field_types import validate
 from lube.study.roller_lines import band_in_words, line_spec
 from lube.units import parse_quantity
 
-_HEIGHT_STEP = "1 pm"
 _MODELS = (
     ("radius", "young_modulus", "poisson_ratio"),
     ("rms_roughness", "ra_roughness", "topography"),
@@ -175,7 +174,7 @@ class Rollers:
         if points is None:
             shortest = parse_quantity(waves["shortest_wavelength"], "m")
             points = rollers.grid_points(self.pair.first.radius, shortest)
-        waves |= {"points": points, "height_step": _HEIGHT_STEP}
+        waves |= {"points": points, "height_step": "1 pm"}
         shared = roughness or validate(rollers.Roughness, waves, "Rollers", StudyError)
         if shared.longest_wavelength == rollers.AUTOMATIC_WAVELENGTH:
             came = f"got {rollers.AUTOMATIC_WAVELENGTH!r}, need a length"

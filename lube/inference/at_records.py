@@ -119,9 +119,8 @@ def film_at_records(
         for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
     )
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
-    table = film_at(
-        properties, rollers, force, speed, formulas, slide_to_roll_ratio=slip, **film_model
-    )
+    choices = film_model | {"slide_to_roll_ratio": slip}
+    table = film_at(properties, rollers, force, speed, formulas, **choices)
     table["dynamic_viscosity"] = properties["dynamic_viscosity"]
     if film_model.get("inlet_shear_heating", "none") == "none":
         del table["inlet_shear_heating_factor"]
@@ -134,8 +133,7 @@ def film_at_records(
 
 def _stored(study, film, contact):
     """Probability of every realisation at the points of contact.nc in pure rolling, by key."""
-    rolling = 0.0 in contact["slide_to_roll_ratio"].values
-    if not rolling or contact["revolutions"].item() != 1:
+    if 0.0 not in contact["slide_to_roll_ratio"].values or contact["revolutions"].item() != 1:
         return {}
     film = at_slip(film, 0.0).transpose(*OPERATING_DIMS, ...)
     stored = contact["breakthrough_probability"].sel(slide_to_roll_ratio=0.0).values
@@ -149,7 +147,6 @@ def _probability(windows, stored, realisations, study):
     values = np.array([stored.get(key, unknown) for key in windows.keys]).T
     missing = np.array([key not in stored for key in windows.keys])
     for realisation in range(realisations) if missing.any() else ():
-        pair = drawn(study, realisation)
-        values[realisation, missing] = windows[missing].count(pair)[:, 1]
+        values[realisation, missing] = windows[missing].count(drawn(study, realisation))[:, 1]
         log.info("records: realisation %d of %d: done", realisation + 1, realisations)
     return values

@@ -141,9 +141,8 @@ def strength_logits(
     logits = logits.transpose("layer_strength", "film_formula", "record")
     # A record is left out if contact with any of the layers is too rare for the curves there.
     known = logits.notnull().all("layer_strength")
-    spline = scipy.interpolate.PchipInterpolator(
-        np.log(logits["layer_strength"]), logits.fillna(0.0)
-    )
+    strengths = np.log(logits["layer_strength"])
+    spline = scipy.interpolate.PchipInterpolator(strengths, logits.fillna(0.0))
     return tried, known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
 
 

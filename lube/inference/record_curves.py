@@ -209,8 +209,7 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
     ratios, layer = first["lambda_ratio"].values, study.boundary_layer
     some, inverse = study_windows(study, first).distinct()
     records = first.isel(record=some)
-    ends = BEYOND[0] * np.nanmin(ratios), BEYOND[1] * np.nanmax(ratios)
-    films = np.geomspace(*ends, FILMS)
+    films = np.geomspace(BEYOND[0] * np.nanmin(ratios), BEYOND[1] * np.nanmax(ratios), FILMS)
     (pairs,) = _on_pairs(study, records, films, [1.0], PAIRS, threads)
     curves = [
         _own_curve(films, pairs[..., number], records.isel(record=number), study.is_sampled)

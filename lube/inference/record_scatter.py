@@ -95,8 +95,7 @@ def record_scatter(
         here = np.flatnonzero((slips == slip) & (runs == run))
         shares = _revolutions(study, windows[here], slip, run, probability[:, here])
         by_slip = _variance_ratio(_variance(shares), variance[here])
-        part = persistent[:, here] / by_slip
-        alone, together = _components(study, slip, turns[here], part, run)
+        alone, together = _components(study, slip, turns[here], persistent[:, here] / by_slip, run)
         ratio[here] = by_slip * (alone + together)
         if of_lines is not None:
             shares = combined_deviations(alone, together, of_lines[:, here], shares)
@@ -133,7 +132,7 @@ def _whole_turns(study, slip):
 
 def _revolutions(study, windows, slip, turns, rolling):
     """Share of every realisation in some revolutions, shape (R, P)."""
-    if (slip == 0.0 and turns == 1.0) or not windows.size:
+    if slip == 0.0 and turns == 1.0:
         return rolling
     shares = np.empty((min(len(rolling), MOST_PAIRS), windows.size))
     for realisation, row in enumerate(shares):
@@ -224,8 +223,8 @@ def _line_effects(model, study, slips, turns, realisations):
         return (np.zeros if one_alignment else np.ones)((2, ratio.size)), None
     most = SHAPED_PAIRS if study.gap.has_shape else MOST_PAIRS
     levels, windows = alignment_windows(model, study)
-    lines = study.line_spec, study.seed, min(realisations, most)
-    in_first, in_second = crosswise(windows, *lines)
+    count = min(realisations, most)
+    in_first, in_second = crosswise(windows, study.line_spec, study.seed, count)
     persistent = persistent_share(in_first, in_second)
     known = np.isfinite(persistent).all(axis=0)
     if not known.any():

@@ -90,10 +90,9 @@ def surfaces_at_records(
     for records, some in (part for part in parts if part[0].any()):
         motion = slips[records], turns[records], study.rig.drift
         scatter[records] = surface_scatter(pair, some, own[0, records], *motion)
-        many, some = (
-            some.assign(film_thickness=each * xr.ones_like(some["film_thickness"]))
-            for each in (thickness, few)
-        )
+        ones = xr.ones_like(some["film_thickness"])
+        many = some.assign(film_thickness=thickness * ones)
+        some = some.assign(film_thickness=few * ones)
         curves[..., records] = _sampled(study, many, threads, FEWER)
         for row, weaker in zip(of_layers, pair.layer.strength / strengths, strict=True):
             row[..., records] = _sampled(study, some, threads, LAYER_FEWER, weaker)[0]
@@ -236,12 +235,8 @@ def reading_errors(surfaces: xr.Dataset, shares: Array) -> Array:
     numpy.ndarray, shape (record,)
         Standard errors of the probability.
     """
-    curves = (surfaces[f"curve_probability{limit}"].values.T for limit in LIMITS)
-    rows = zip(shares, *curves, strict=True)
     # The thickest film first: its probability is the least.
-    return np.array(
-        [
-            np.interp(share, mean[::-1], 0.25 * (upper - lower)[::-1])
-            for share, mean, lower, upper in rows
-        ]
-    )
+    thickest_first = surfaces.isel(curve_lambda_ratio=slice(None, None, -1))
+    mean, lower, upper = (thickest_first[f"curve_probability{end}"].values.T for end in LIMITS)
+    rows = zip(shares, mean, 0.25 * (upper - lower), strict=True)
+    return np.array([np.interp(*row) for row in rows])

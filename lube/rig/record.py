@@ -95,9 +95,8 @@ class Record:
         self._faster = 0 if self._ratios[0] == 1.0 else 1
         # Time steps in a revolution of each roller that turns: in one step the faster surface
         # moves by one grid point. The period is that of the first of them.
-        self._revolutions = [
-            size / ratio for size, ratio in zip(points, self._ratios, strict=True) if ratio > 0.0
-        ]
+        both = zip(points, self._ratios, strict=True)
+        self._revolutions = [size / ratio for size, ratio in both if ratio > 0.0]
         faster_speed = max(surface_speeds(conditions.speed, conditions.slide_to_roll_ratio))
         self._period = 60.0 / faster_speed * (self._revolutions[0] / points[0])
 

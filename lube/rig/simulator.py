@@ -15,12 +15,11 @@ to the steps of the converter.
                    amplifier         +-- film -----+
 """
 
-import functools
 import logging
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import xarray as xr
@@ -107,7 +106,7 @@ def _parts(study):
 
 def _line_runs(study, points, numbers):
     """Yield the first of some operating points, the way in a time step, m, and turns of lines."""
-    drawn_once = functools.cache(partial(drawn, study))
+    drawn_once = cache(partial(drawn, study))
     for begin in range(0, points.sizes["operating_point"], TOGETHER):
         some = points.isel(operating_point=slice(begin, begin + TOGETHER))
         yield begin, study.line_spec.spacing, _turns(study, some, map(drawn_once, numbers))
@@ -250,23 +249,20 @@ class Revolution:
         numpy.ndarray
             Shape (samples,), float64, V, whole steps of the converter.
         """
-        points = np.arange(self.contact.max() + 1)
+        contact, limit = self.contact, rig.amplifier_range
+        points = np.arange(contact.max() + 1)
         feed = rig.series_resistance + rig.lead_resistance
         conductance = 1.0 / contact_resistance(points, self.spot_resistance)
         conductance += 1.0 / rig.leak_resistance
         targets = rig.bias_voltage / (1.0 + feed * conductance)
         decays = np.exp(-self.time_step * (conductance + 1.0 / feed) / self.capacitance)
         gain = rig.series_resistance / feed
+        offset = rig.bias_voltage * (1.0 - gain)
+        filter_decay = np.exp(-2.0 * np.pi * rig.bandwidth * self.time_step)
+        steps_per_sample = 1.0 / (rig.sampling_rate * self.time_step)
+        samples = int(contact.size * self.time_step * rig.sampling_rate) or 1
         voltage = sampled_voltage(
-            self.contact,
-            targets,
-            decays,
-            gain,
-            rig.bias_voltage * (1.0 - gain),
-            rig.amplifier_range,
-            np.exp(-2.0 * np.pi * rig.bandwidth * self.time_step),
-            1.0 / (rig.sampling_rate * self.time_step),
-            int(self.contact.size * self.time_step * rig.sampling_rate) or 1,
+            contact, targets, decays, gain, offset, limit, filter_decay, steps_per_sample, samples
         )
         generator = np.random.default_rng(self.seed)
         voltage += rig.noise * generator.standard_normal(voltage.size, np.float32)

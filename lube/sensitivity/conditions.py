@@ -20,12 +20,7 @@ from lube.study.line_spec import LineSpec
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import BoundaryLayer, Roller
 from lube.study.study import Study
-from lube.study.uncertainty import (
-    Factor,
-    check_uncertainty,
-    deviating_heights,
-    deviating_lines,
-)
+from lube.study.uncertainty import Factor, check_uncertainty, deviating_heights, deviating_lines
 from lube.types import Array
 
 OIL = (
@@ -118,9 +113,8 @@ class Deviating:
         hottest = min(max(hottest, coldest + 1.0), *(one[1] for one in ranges))
         temperature = np.linspace(min(coldest, hottest - 1.0), hottest, NODES)
         table = lubricant_table(study.lubricants, temperature)[OIL].drop_attrs()
-        definitions = study.uncertainty.pressure_viscosity_definition
-        slopes = [_slope_ratio(table, each) for each in definitions.choices] if definitions else []
-        if slopes:
+        if definitions := study.uncertainty.pressure_viscosity_definition:
+            slopes = [_slope_ratio(table, each) for each in definitions.choices]
             table["slope_ratio"] = xr.concat(slopes, "definition")
         return cls(study, np.log(table), _heights(study))
 

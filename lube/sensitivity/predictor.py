@@ -10,7 +10,7 @@ from lube.digits import six_digits
 from lube.errors import DataError
 from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
-from lube.sensitivity.runs import SEEDS, Model, is_sum, models
+from lube.sensitivity.runs import SEEDS, Model, is_chosen, is_sum, models
 from lube.sensitivity.samples import deviations, over_run, quantiles
 from lube.sensitivity.shape import EffectiveRatio
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
@@ -101,8 +101,7 @@ class Predictor:
                 )
             nearer = [one.parts for other, one in surrogates.items() if other.is_nearer(model)]
             parts = tuple(dict.fromkeys(chain.from_iterable(nearer)))
-            known = is_sum(deviating, model)
-            surrogates[model] = Surrogate.of(variables, found, parts, known)
+            surrogates[model] = Surrogate.of(variables, found, parts, is_sum(deviating, model))
         return cls(deviating, surrogates, *_film(deviating, runs), effective)
 
     def errors(self, runs: xr.Dataset, deviation: Array) -> dict:
@@ -122,7 +121,7 @@ class Predictor:
         """
         points = stacked_points(self.deviating).to_dataframe().assign(deviation=deviation)
         known = points.set_index(list(POINT_DIMS))["deviation"]
-        absolute, relative, counts = [], [], []
+        absolute, relative, run_counts, left_out_counts = [], [], [], []
         for model, surrogate in self.surrogates.items():
             own = _of_model(runs, model)
             left_out = np.isfinite(surrogate.missed)
@@ -132,14 +131,15 @@ class Predictor:
             absolute.append(np.sqrt(np.mean(missed**2)))
             relative.append(np.sqrt(np.mean(scaled**2)))
             fitted = np.isfinite(own["breakthrough_probability"].values).all(axis=1)
-            counts.append((fitted.sum(), left_out.sum()))
+            run_counts.append(fitted.sum())
+            left_out_counts.append(left_out.sum())
         return {
-            "surrogate_model": ("surrogate_model", [", ".join(model) for model in self.surrogates]),
-            "surrogate_error": ("surrogate_model", six_digits(np.array(absolute))),
-            "relative_surrogate_error": ("surrogate_model", six_digits(np.array(relative))),
-            "run_count": ("surrogate_model", [fitted for fitted, _ in counts]),
-            "left_out_count": ("surrogate_model", [left_out for _, left_out in counts]),
-            "film_surrogate_error": ((), six_digits(np.array(self.film_error)).item()),
+            "surrogate_model": [", ".join(model) for model in self.surrogates],
+            "surrogate_error": six_digits(np.array(absolute)),
+            "relative_surrogate_error": six_digits(np.array(relative)),
+            "run_count": run_counts,
+            "left_out_count": left_out_counts,
+            "film_surrogate_error": six_digits(np.array(self.film_error)).item(),
         }
 
     def log_probability(
@@ -167,9 +167,8 @@ class Predictor:
         points = stacked_points(self.deviating) if points is None else points
         # Options of xarray are those of all threads: set here, none changes them for the others.
         with xr.set_options(arithmetic_join="exact", keep_attrs=False):
-            return np.concatenate(
-                on_threads(lambda part: self._of_part(part, points), parts, threads)
-            )
+            found = on_threads(lambda part: self._of_part(part, points), parts, threads)
+        return np.concatenate(found)
 
     def draws(self, points: xr.Dataset, samples: int = 1024) -> Pair:
         """Draw probabilities at some operating points, and for each a place among pairs of rollers.
@@ -232,16 +231,6 @@ def _of_model(runs, model):
     """Select the runs of a model."""
     same = [runs[name].values == choice for name, choice in model._asdict().items()]
     return runs.isel(run=np.all(same, axis=0))
-
-
-def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> Array:
-    """Find which of some samples choose a model; `numbers` are their deviations."""
-    chosen = np.ones(count, bool)
-    for name, choice in model._asdict().items():
-        if name in numbers:
-            choices = getattr(deviating.study.uncertainty, name).choices
-            chosen &= numbers[name] == choices.index(choice)
-    return chosen
 
 
 def _film(deviating, runs):

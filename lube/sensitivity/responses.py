@@ -110,10 +110,8 @@ def with_responses(
         The films, with the variables that `lube.grid.films.film_at` adds.
     """
     table, known = response_table(solved, contact_model)
-    weights = (
-        _weights(table[name].values, each)
-        for name, each in zip(NUMBERS, _numbers(film), strict=True)
-    )
+    numbers = zip(NUMBERS, _numbers(film), strict=True)
+    weights = (_weights(table[name].values, each) for name, each in numbers)
     angles, position = table["wave_angle"].values, table["response_position"].values
     number = table["slide_to_roll_ratio"].values
     widths = film["contact_half_width"].broadcast_like(film["film_thickness"]).values
@@ -168,8 +166,7 @@ def _numbers(film):
         thinner = film_at(slower * groups.speed) / film_at(groups.speed)
         slower = slower ** (np.log(factor) / np.log(thinner))
     numbers = film["moes_load"] / np.sqrt(slower), film["moes_material"] * slower**0.25
-    like = film["film_thickness"]
-    return np.stack([np.ravel(each.broadcast_like(like)) for each in numbers])
+    return np.stack([np.ravel(each.broadcast_like(film["film_thickness"])) for each in numbers])
 
 
 def _levels(values, ratio):

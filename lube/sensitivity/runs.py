@@ -33,12 +33,7 @@ SURFACE_SEEDS = 2
 """Sets that have surfaces of their own; the others share these."""
 FEWER_SURFACES = 16
 """Surfaces in each set are this many times fewer than elsewhere."""
-SIZES = {
-    "line": (1024, 2),
-    "answered line": (256, 2),
-    "surface": (32, 12),
-    "sum": (4, 24),
-}
+SIZES = {"line": (1024, 2), "answered line": (256, 2), "surface": (32, 12), "sum": (4, 24)}
 """Numbers of samples of a model, and of operating points of each.
 
 Surfaces are slow to draw, but once drawn they serve many operating points. The response of the
@@ -96,6 +91,16 @@ def is_sum(deviating: Deviating, model: Model) -> bool:
     nearer = [other for other in models(deviating) if other.is_nearer(model)]
     others = model.deviations()
     return model.contact_model == "surface" and others > 1 and len(nearer) == 2**others - 1
+
+
+def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> Array:
+    """Find which of some samples choose a model; `numbers` are their deviations."""
+    chosen = np.ones(count, bool)
+    for name, choice in model._asdict().items():
+        if name in numbers:
+            choices = getattr(deviating.study.uncertainty, name).choices
+            chosen &= numbers[name] == choices.index(choice)
+    return chosen
 
 
 def _sizes(deviating, model):
@@ -196,19 +201,50 @@ def run(
     parts = ((runs, film, same) for runs, film in films for same in _same_samples(unit[runs]))
     of_samples = [(runs[same], film.isel(run=same)) for runs, film, same in parts]
 
+    found = np.empty((len(unit), SEEDS))
+
     def of_sample(sample):
         runs, film = sample
         own = {name: column[runs[0]].item() for name, column in values.items()}
-        return _probabilities(deviating, model, own, film)
+        found[runs] = _probabilities(deviating, model, own, film)
 
-    found = np.empty((len(unit), SEEDS))
     # Options of xarray are those of all threads: set here, none changes them for the others.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
-        each = on_threads(of_sample, of_samples, threads, "direct runs")
-    for (runs, _), probabilities in zip(of_samples, each, strict=True):
-        found[runs] = probabilities
+        on_threads(of_sample, of_samples, threads, "direct runs")
     known = np.where(found > 0.0, found, np.nan)
     return joined(films).assign(breakthrough_probability=(("run", "seed"), known))
+
+
+def run_all(deviating: Deviating, unit: Array, points: xr.Dataset) -> Array:
+    """Compute the probability of breakthrough for some samples, each at all operating points.
+
+    Parameters
+    ----------
+    deviating : Deviating
+        The study.
+    unit : numpy.ndarray
+        Samples of all factors, from 0 to 1, shape (samples, factors).
+    points : xarray.Dataset
+        Operating points as in `run`, over point.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples, points), by the model that each sample chooses; NaN where its film is not
+        known.
+    """
+    number = points.sizes["point"]
+    samples = np.repeat(unit, number, axis=0)
+    runs = points.isel(point=np.tile(np.arange(number), len(unit))).rename(point="run")
+    values, found = deviations(deviating.factors, samples), np.full(len(samples), np.nan)
+    for model in models(deviating):
+        some = np.flatnonzero(is_chosen(deviating, model, values, len(samples)))
+        if some.size:
+            table = run(deviating, model, samples[some], runs.isel(run=some))
+            # Without a value where the layer holds in all contacts that were sampled.
+            probability = table["breakthrough_probability"].fillna(0.0).mean("seed").clip(max=1.0)
+            found[some] = probability.where(table["film_thickness"].notnull()).values
+    return found.reshape(len(unit), number)
 
 
 def _same_samples(unit):
@@ -227,13 +263,12 @@ def _probabilities(deviating, model, values, film):
     # Under films that are over a factor, lines break as higher ones do if their layer is weaker.
     weaker = film.get("roughness_factor", 1.0)
     if model.contact_model == "surface":
-        choices = {"threads": 1, "fewer": FEWER_SURFACES, "weaker": weaker}
         found = []
         for seed in range(SURFACE_SEEDS):
             pair = RoughPair(spec, study.rollers.length, layer, study.seed + seed, model.gap)
             # The scatter between so few surfaces is not needed.
             with np.errstate(invalid="ignore", divide="ignore"):
-                contact = surface_contact(pair, film, **choices)
+                contact = surface_contact(pair, film, 1, weaker, FEWER_SURFACES)
             found.append(contact["breakthrough_probability"].values)
         return np.stack([found[seed % SURFACE_SEEDS] for seed in range(SEEDS)], axis=1)
     windows = ContactWindows(spec, film, layer, model.gap, weaker)

@@ -78,7 +78,8 @@ class EffectiveRatio:
         axes = {name: np.log(each) for name, each in numbers.items()}
         if gap.is_answered:
             half_widths = levels["contact_half_width"]
-            band = _band(deviating)
+            given = {name: getattr(deviating.study.uncertainty, name) for name in BAND}
+            band = {name: np.linspace(*one.ends, BAND_NODES) for name, one in given.items() if one}
             rough = _deformed(deviating, solved, contact_model, half_widths, band)
             film = film.reshape(*film.shape[:-1], *(1,) * (1 + len(band)), -1) / rough
             axes |= {"contact_half_width": np.log(half_widths)} | band
@@ -101,12 +102,6 @@ def _shapes(deviating, numbers):
     films = typical_films(deviating, **numbers)
     shapes = [film.scaled_gap(WINDOW) / film.central_gap for film in films.values.flat]
     return np.reshape(shapes, (*films.shape, WINDOW.size))
-
-
-def _band(deviating):
-    """Levels of the factors `BAND` of a study."""
-    given = {name: getattr(deviating.study.uncertainty, name) for name in BAND}
-    return {name: np.linspace(*one.ends, BAND_NODES) for name, one in given.items() if one}
 
 
 def _deformed(deviating, solved, contact_model, half_widths, band):

@@ -76,12 +76,10 @@ def contact_of_surfaces(
     found = []
     for formulas, fewer in ((slice(1), 1), (slice(1, None), FEWER)):
         some = film.isel(film_formula=formulas)
-        if not some.sizes["film_formula"]:
-            continue
-        choices = {"fewer": fewer, "slide_to_roll_ratio": levels}
-        if wanted is not None:
-            choices["wanted"] = wanted.isel(film_formula=formulas)
-        found.append(surface_contact(pair, some, threads, **choices))
+        if some.sizes["film_formula"]:
+            own = None if wanted is None else wanted.isel(film_formula=formulas)
+            choices = {"fewer": fewer, "slide_to_roll_ratio": levels, "wanted": own}
+            found.append(surface_contact(pair, some, threads, **choices))
     found = xr.concat(found, "film_formula", join="exact")
     # If the film is the same at all slips, so is the probability.
     found = xr.broadcast(found.drop_attrs())[0]

@@ -92,16 +92,12 @@ def compare(
         contradict each other.
     """
     table = _table(model, experiment).set_coords([*AT_RECORDS, "origin"])
-    sides = {}
+    tables = {}
     if "realisation" in table.dims:
-        sides["line"] = _of_lines(table), _ranges_of_lines(table)
+        tables["line"] = _judged(table, experiment, _of_lines(table), _ranges_of_lines(table))
     if surfaces is not None:
         ranges = _ranges_of_surfaces(table, surfaces, seed)
-        sides["surface"] = _of_surfaces(table, surfaces), ranges
-    tables = {}
-    for contact_model, (of_model, ranges) in sides.items():
-        found = _judged(table, experiment, of_model) | _expected(ranges)
-        tables[contact_model] = table.assign(with_dims("comparison", found))
+        tables["surface"] = _judged(table, experiment, _of_surfaces(table, surfaces), ranges)
     first = next(iter(tables.values()))
     notes = {"missing": _missing(first, levels), "remarks": _contradictions(first)}
     for lines in notes.values():
@@ -142,18 +138,20 @@ def _of_surfaces(table, surfaces):
     return limits, surface_prediction(limits, size, ratio, table["share_error"].values)
 
 
-def _judged(table, experiment, sides):
-    """Values of one contact model at the records, figures of agreement and means at levels."""
+def _judged(table, experiment, sides, ranges):
+    """Add values of one contact model, figures of agreement and means at levels to the table."""
     limits, (lower, upper) = sides
     measured = table["measured_share"].values
-    return {
+    found = {
         **values_with_limits("simulated_probability", limits),
         "predicted_share_lower": lower,
         "predicted_share_upper": upper,
         "within_prediction": (measured >= lower) & (measured <= upper),
         **_agreement((limits[0], lower, upper), experiment),
         **_level_means(table, limits[0]),
+        **_expected(ranges),
     }
+    return table.assign(with_dims("comparison", found))
 
 
 def _agreement(values, experiment):
@@ -249,27 +247,24 @@ def _ranges_of_lines(table):
     by_formula = table["breakthrough_probability"].values.swapaxes(0, 1)
     scatter, pair = table["scatter_ratio"].values, table["pair"].to_series().factorize()[0]
     for row, (members, ratio) in enumerate(zip(by_formula, scatter, strict=True)):
-        known = measured & np.isfinite(members).all(axis=0)
-        if len(members) > 2 and known.any():
-            of_known = windows[known], ratio[known], pair[known]
-            ranges[row] = _left_out(members[:, known], *of_known)
+        if len(members) > 2:
+            known = measured & np.isfinite(members).all(axis=0)
+            ranges[row] = _left_out(members[:, known], windows[known], ratio[known], pair[known])
     return ranges
 
 
 def _ranges_of_surfaces(table, surfaces, seed):
     """As `_ranges_of_lines`, of drawn records."""
-    ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
-    measured = np.isfinite(table["measured_share"].values)
-    drawn = pair_shares(surfaces, table["pair"], seed)
+    measured, ranges = np.isfinite(table["measured_share"].values), []
+    drawn = pair_shares(surfaces, table["pair"], seed).swapaxes(0, 1)
     names = "breakthrough_probability", "sample_size"
     ratio, known = surfaces["scatter_ratio"].values, (surfaces[name].values for name in names)
-    for row, (mean, size) in enumerate(zip(*known, strict=True)):
+    for mean, size, shares in zip(*known, drawn, strict=True):
         some = measured & np.isfinite(mean)
-        if some.any():
-            limits = prediction_limits(mean, size, ratio, SURFACES, mean_error=0.0)
-            sides = [each[some] for each in (mean, *limits)]
-            ranges[row] = _range([agreement(*sides, each[some]) for each in drawn[:, row]])
-    return ranges
+        limits = prediction_limits(mean, size, ratio, SURFACES, mean_error=0.0)
+        sides = [each[some] for each in (mean, *limits)]
+        ranges.append(_range([agreement(*sides, each[some]) for each in shares]))
+    return np.array(ranges)
 
 
 def _range(rows):

@@ -13,7 +13,7 @@ from lube.grid.operating_points import at_slip, known_films, operating_points
 from lube.physics import electrical
 from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import simulated_revolutions
-from lube.schema import POINT_DIMS, label, values_with_limits
+from lube.schema import POINT_DIMS, label, values_with_limits, with_dims
 from lube.study.rig_settings import OWN_RIG, PRESETS
 from lube.study.study import Study
 from lube.types import Datasets
@@ -76,8 +76,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 def _phase(rig, *circuit):
     """Phase of the impedance that a bridge with a rig's series resistance reads."""
-    series = rig.series_resistance + rig.lead_resistance
-    settings = {"frequency": rig.frequency, "series": series}
+    settings = {"frequency": rig.frequency, "series": rig.series_resistance + rig.lead_resistance}
     impedance = xr.apply_ufunc(electrical.read_impedance, *circuit, kwargs=settings)
     return xr.apply_ufunc(np.angle, impedance)
 
@@ -129,14 +128,9 @@ def _readings(study, film, rigs, slip, threads):
         for row, rig in enumerate(rigs.values()):
             shares = read_shares(revolution.voltage(rig), study.experiment, rig)
             read[(row, ..., *at)], by_threshold[(row, ..., *at)] = shares
-    found = xr.Dataset(
-        {
-            "true_contact_share": (POINT_DIMS, share),
-            "read_contact_share": (("rig", "reading", *POINT_DIMS), read),
-            "threshold_contact_share": (("rig", "threshold", *POINT_DIMS), by_threshold),
-        }
-    )
-    return found, xr.DataArray(length, dims=POINT_DIMS)
+    found = {"true_contact_share": share, "read_contact_share": read}
+    found["threshold_contact_share"] = by_threshold
+    return xr.Dataset(with_dims("electrical", found)), xr.DataArray(length, dims=POINT_DIMS)
 
 
 def _discharges(study, film, rigs, threads, surfaces):
@@ -158,7 +152,7 @@ def _discharges(study, film, rigs, threads, surfaces):
         return windows.on_pairs(study.line_spec, study.seed, PAIRS, threads)[:, 0].mean(axis=0)
 
     gaps = [rig.bias_voltage / rig.dielectric_strength for rig in rigs.values()]
-    found = {gap: touching(gap) for gap in (0.0, *gaps)}
+    found = {gap: touching(gap) for gap in {0.0, *gaps}}
     # Few contacts more may come out as fewer, since both shares are estimates.
     each = [np.maximum(found[gap] - found[0.0], 0.0) for gap in gaps]
     sizes = [film.sizes[name] for name in POINT_DIMS]

@@ -61,16 +61,14 @@ def _of_surfaces(comparison, surfaces, seed):
     comparison = comparison.drop_dims("realisation", errors="ignore")
     probability, noise = comparison["simulated_probability"], comparison["share_error"]
     errors = reading_errors(surfaces, comparison["measured_share"].values)
+    drawn = pair_shares(surfaces, comparison["pair"], seed)
     return comparison.assign(
         pooled_probability=probability,
         pooled_error=xr.zeros_like(probability),
         share_error=noise.copy(data=np.hypot(noise.values, errors)),
         scatter_ratio=xr.zeros_like(probability) + surfaces["scatter_ratio"].drop_attrs(),
         sample_size=surfaces["sample_size"].drop_attrs(),
-        drawn_share=(
-            ("drawn_pair", "film_formula", "record"),
-            pair_shares(surfaces, comparison["pair"], seed),
-        ),
+        drawn_share=(("drawn_pair", "film_formula", "record"), drawn),
     )
 
 

@@ -12,7 +12,6 @@ from lube.types import Datasets
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``indicators.nc``; see `lube.stages`. With slip, the film is that nearest to rolling."""
     film = at_slip(inputs["film"]).assign(inputs["lubricant"][["dynamic_viscosity"]])
-    resistance = inputs["film_profile"]["rolling_resistance"]
-    found = indicators(film, resistance, study.rough_rollers)
+    found = indicators(film, inputs["film_profile"]["rolling_resistance"], study.rough_rollers)
     table = {name: found[name].transpose(*row.dims) for name, row in FILES["indicators"].items()}
     return label(xr.Dataset(table), "indicators")

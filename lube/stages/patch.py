@@ -64,10 +64,8 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
     smallest = 4.0 * spec.longest_wavelength / LEAST_POINTS
     surface = rough_surface(spec, contact=(smallest, smallest), waves=1)
     lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]
-    rms_height, gradient = (
-        np.sqrt(sum(np.square(line[name]) for line in lines))
-        for name in ("rms_height", "rms_slope")
-    )
+    rms_height = np.sqrt(sum(np.square(line["rms_height"]) for line in lines))
+    gradient = np.sqrt(sum(np.square(line["rms_slope"]) for line in lines))
     values = {
         "relative_pressure": np.array(PRESSURES),
         "pressure": reduced_modulus * gradient * np.array(PRESSURES),

@@ -11,7 +11,7 @@ from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip, over_contact_models
 from lube.inference import planning
-from lube.schema import POINT_DIMS, label
+from lube.schema import POINT_DIMS, label, with_dims
 from lube.sensitivity.findings import LEFT, narrowing
 from lube.sensitivity.samples import SEED
 from lube.study.rig_settings import OWN_RIG
@@ -61,14 +61,14 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
             "film_by_coefficient": by_coefficient,
             "reading_error": read,
         }
-        table = {name: (POINT_DIMS, _digits(each.reshape(sizes))) for name, each in table.items()}
+        values = {name: _digits(each.reshape(sizes)) for name, each in table.items()}
         errors = [planning.relative_error(found.probability, size, one, read) for one in ratios]
         for name, others in unknown.items():
             error = np.hypot(errors, others[model])
             widths = planning.half_widths(found, by_coefficient, error, ensemble)
-            widths = _digits(widths.reshape(len(planning.QUANTITIES), len(TURNS), *sizes))
-            table[name] = ("quantity", "turns", *POINT_DIMS), widths
-        tables[model] = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
+            values[name] = _digits(widths.reshape(len(planning.QUANTITIES), len(TURNS), *sizes))
+        values["best_threshold"] = threshold
+        tables[model] = xr.Dataset(with_dims("plan", values), coordinates)
     dataset = over_contact_models("plan", tables) if study.has_surfaces else tables["line"]
     if "sensitivity" in inputs:
         factors = inputs["sensitivity"]["factor"].values.tolist()
@@ -85,8 +85,7 @@ def _of_lines(study, inputs, film, slip, reading, threads):
     contact, pair = inputs["contact"], RoughPair.of(study)
     found = planning.slopes(pair, film, threads)
     size = _sample_size(contact, inputs["film"], slip)
-    records = slip, TURNS, study.rig.drift, study.revolutions
-    ratios = planning.line_ratios(pair, film, *records)
+    ratios = planning.line_ratios(pair, film, slip, TURNS, study.rig.drift, study.revolutions)
     return found, size, ratios, reading, contact.sizes["realisation"]
 
 

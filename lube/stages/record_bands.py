@@ -62,8 +62,7 @@ def _assumed(study, inputs, comparison):
     with one_blas_thread():  # the number of threads would change the last digits
         deviating = Deviating.of(study, temperatures=comparison["temperature"].values)
         runs, responses = inputs["sensitivity_runs"], inputs.get("sensitivity_responses")
-        predictor = Predictor.of(deviating, runs, responses)
-        means, places = predictor.draws(points)
+        means, places = Predictor.of(deviating, runs, responses).draws(points)
     slip = abs(comparison["slide_to_roll_ratio"].values - rolling(study.slips))
     means[:, slip > NEAR] = np.nan
     trials = _trials(comparison, inputs.get("surface_records"))

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.rough_pair import PADDING, roughness_batch
-from lube.schema import label
+from lube.schema import label, with_dims
 from lube.study.line_spec import LineSpec
 from lube.study.study import Study
 from lube.surfaces.spectra import line_moments, spectrum_bands, spectrum_moments
@@ -43,22 +43,18 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
     dataset = roughness_batch(spec, seed, realisations)
     steps = dataset["height"]
     heights = steps.where(steps != PADDING) * spec.height_step
-    dataset = dataset.assign(height=heights)
-    dims, moments = ("realisation", "roller"), [_moments(pair, spec) for pair in heights.values]
-    for name in moments[0][0]:
-        dataset[name] = dims, [[line[name] for line in pair] for pair in moments]
+    moments = [_moments(pair, spec) for pair in heights.values]
+    values = {name: [[line[name] for line in pair] for pair in moments] for name in moments[0][0]}
     expected = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]
-    for name in expected[0]:
-        dataset[f"spectrum_{name}"] = "roller", [line[name] for line in expected]
+    values |= {f"spectrum_{name}": [line[name] for line in expected] for name in expected[0]}
     bands = [spectrum_bands(spec, roller, BANDS) for roller in range(len(ROLLER_NUMBERS))]
-    for number, name in enumerate(("wave_vector", "prescribed_density")):
-        dataset[name] = ("roller", "wave"), [band[number] for band in bands]
-    dataset["wave"] = np.arange(BANDS)
+    values["wave_vector"], values["prescribed_density"] = map(list, zip(*bands, strict=True))
+    values["wave"] = np.arange(BANDS)
     for name in ("skewness", "kurtosis"):
-        dataset[f"prescribed_{name}"] = "roller", [getattr(line, name) for line in spec.lines]
-    dataset["seed"] = "realisation", np.full(len(realisations), seed, np.int64)
-    dataset["position"] = spec.spacing * np.arange(max(spec.points))
-    return label(dataset, "roughness")
+        values[f"prescribed_{name}"] = [getattr(line, name) for line in spec.lines]
+    values["seed"] = np.full(len(realisations), seed, np.int64)
+    values["position"] = spec.spacing * np.arange(max(spec.points))
+    return label(dataset.assign(height=heights, **with_dims("roughness", values)), "roughness")
 
 
 def _moments(pair, spec):

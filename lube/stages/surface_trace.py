@@ -37,8 +37,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     found = found.assign_coords(step=times, **levels).rename(step="time")
     found = found.assign(film[["film_thickness", "contact_half_width", "entrainment_speed"]])
     lengths = found["contact_length"].values
-    resistivity = study.resistivity if study.conducts else np.nan
-    resistance = contact_resistance(lengths, resistivity)
+    resistance = contact_resistance(lengths, study.resistivity if study.conducts else np.nan)
     found["contact_resistance"] = ("operating_point", "time"), resistance
     known = np.flatnonzero(np.isfinite(lengths).all(axis=1)) if study.conducts else ()
     logged = {number: _logged(study, found.isel(operating_point=number)) for number in known}

@@ -9,7 +9,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.windows import FLATTENED, ContactWindows, study_windows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
-from lube.grid.operating_points import surface_speeds
+from lube.grid.operating_points import over_contact_models, surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, mean_interval
@@ -102,17 +102,13 @@ def _on_lines(study, film, threads):
 
 def _by_model(study, film, lines, areal):
     """Variables of lines and of surfaces over contact_model; the theory is for lines."""
-    theory, lines = lines[list(_ASYMPTOTES)], lines.drop_vars(_ASYMPTOTES)
     known = _on_surfaces(study, film["entrainment_speed"], areal.drop_attrs())
-    surfaces = {name: known[name].transpose(*lines[name].dims) for name in lines}
+    surfaces = {name: known[name].transpose(*lines[name].dims) for name in known}
     tables = {"line": lines, "surface": lines.assign(surfaces)}
-    models = list(study.contact_model)
-    levels = xr.DataArray(models, dims="contact_model", name="contact_model")
-    found = xr.concat([tables[name] for name in models], levels, join="exact")
+    found = over_contact_models("tail", {name: tables[name] for name in study.contact_model})
     if study.gap.is_answered:
-        found = found.assign(surface_rms_deformation=areal["surface_rms_deformation"])
-    deviation = _in_pure_rolling(areal["pair_deviation"])
-    return found.assign(surface_pair_deviation=deviation, **theory)
+        found["surface_rms_deformation"] = areal["surface_rms_deformation"]
+    return found.assign(surface_pair_deviation=_in_pure_rolling(areal["pair_deviation"]))
 
 
 def _on_surfaces(study, speed, areal):
@@ -146,11 +142,9 @@ def surface_rates(surfaces: xr.Dataset, speed: xr.DataArray) -> dict[str, xr.Dat
         (s).
     """
     passage = surfaces["passage_width"]
-    rates = {
-        f"breakthrough_rate{end}": surfaces[f"breakthroughs{end}"] * speed / passage
-        for end in LIMITS
-    }
-    return rates | {"breakthrough_duration": passage / speed}
+    rates = (surfaces[f"breakthroughs{end}"] * speed / passage for end in LIMITS)
+    found = values_with_limits("breakthrough_rate", rates)
+    return found | {"breakthrough_duration": passage / speed}
 
 
 def _by_groups(found, passages, revolution):
@@ -169,10 +163,9 @@ def _by_groups(found, passages, revolution):
 
 def _seen_groups(found, windows):
     """Find how many groups of breakthroughs are expected in some independent windows."""
+    probability = {end: found[f"breakthrough_probability{end}"] for end in LIMITS}
     with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
-        return {
-            end: -windows * np.log1p(-found[f"breakthrough_probability{end}"]) for end in LIMITS
-        }
+        return {end: -windows * np.log1p(-each) for end, each in probability.items()}
 
 
 def _pair_shares(groups):
@@ -320,10 +313,15 @@ def _in_a_revolution(spec, film, runs, of_pairs):
     points = spec.points[0]
     width = 2.0 * film["contact_half_width"]
     windows = independent_windows(points * spec.spacing, width, spec.longest_wavelength)
-    groups = runs.isel(outcome=2, drop=True) * points
+    found = pair_limits(of_pairs.assign(groups=runs.isel(outcome=2, drop=True) * points))
+    seen = _seen_groups(found, windows)
+    # Groups of breakthroughs come independently of one another. Where contact is so frequent that
+    # hardly any group ends, they are fewer than the independent windows with a breakthrough, which
+    # are counted instead.
+    groups = {end: np.maximum(found[f"groups{end}"], seen[end]) for end in LIMITS}
     steps = _first_breakthrough(runs.mean("pair"), _window_points(spec, film), points)
-    shares = _touching_pairs(groups, of_pairs, windows)
-    return shares | {"first_breakthrough_time": spec.spacing / film["entrainment_speed"] * steps}
+    time = spec.spacing / film["entrainment_speed"] * steps
+    return _pair_shares(groups) | {"first_breakthrough_time": time}
 
 
 def _window_points(spec, film):
@@ -349,18 +347,6 @@ def _sampled(spec, film, windows, slips, seed, pairs, threads=None):
     )
     contact, breakthrough = windows.transpose("outcome", ...)
     return xr.Dataset(dict(zip(PROBABILITIES, (breakthrough, contact), strict=True))), runs
-
-
-def _touching_pairs(groups, of_pairs, windows):
-    """Fraction of pairs with a breakthrough in a revolution, and its limits.
-
-    Groups of breakthroughs come independently of one another. Where contact is so frequent that
-    hardly any group ends, they are fewer than the independent windows with a breakthrough, which
-    are counted instead.
-    """
-    found = pair_limits(of_pairs.assign(groups=groups))
-    seen = _seen_groups(found, windows)
-    return _pair_shares({end: np.maximum(found[f"groups{end}"], seen[end]) for end in LIMITS})
 
 
 def _first_breakthrough(runs, points, revolution):
@@ -405,8 +391,7 @@ def _asymptotes(spec, film, boundary_layer, gap):
     The boundary layer breaks if the summit that follows is sharp enough.
     """
     if gap.is_answered:  # the moments change along the window
-        unknown = xr.full_like(film["film_thickness"], np.nan)
-        return dict.fromkeys(_ASYMPTOTES, unknown)
+        return dict.fromkeys(_ASYMPTOTES, xr.full_like(film["film_thickness"], np.nan))
     curvature = breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
     moments = pair_moments(spec)
     films = shaped_films(film) if gap.has_shape else film["film_thickness"]

@@ -32,14 +32,9 @@ _RESPONSE = ["response_real", "response_imaginary", "reduced_radius", "composite
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``trace.nc``; see `lube.stages`."""
-    return contact_trace(
-        inputs["roughness"],
-        inputs["film"],
-        study.trace_points,
-        study.boundary_layer,
-        study.resistivity if study.conducts else np.nan,
-        study.gap,
-    )
+    lines, film, layer = inputs["roughness"], inputs["film"], study.boundary_layer
+    resistivity = study.resistivity if study.conducts else np.nan
+    return contact_trace(lines, film, study.trace_points, layer, resistivity, study.gap)
 
 
 def contact_trace(
@@ -163,8 +158,7 @@ def contact_window(
     both = zip(pair, places, strict=True)
     heights = np.array([line[(place + window) % line.size] for line, place in both], np.int64)
     if gap.is_answered:
-        answers = answers_at(point, gap.has_shape).values
-        heights += lifted(pair, grid, answers, ratios, step, window)
+        heights += lifted(pair, grid, answers_at(point, gap.has_shape).values, ratios, step, window)
     # Points of a line that are ahead in its direction of motion come first.
     heights, film = heights[:, ::-1], np.broadcast_to(film, window.shape)[::-1]
     overlap = heights.sum(axis=0) - film
@@ -172,15 +166,12 @@ def contact_window(
         touching = np.abs(window[overlap > 0]).max(initial=0)
         shown = np.abs(window) <= max(half_width / grid.spacing, touching + 1)
         window, heights, overlap = window[shown], heights[:, shown], overlap[shown]
-    segments = _segments(overlap, point, grid)
-    return xr.Dataset(
-        {
-            "height": (("roller", "x"), heights * grid.height_step),
-            "overlap": ("x", overlap * grid.height_step),
-            **{name: ("segment", values) for name, values in segments.items()},
-        },
-        coords={"x": window * grid.spacing, "roller": lines["roller"]},
-    )
+    found = xr.Dataset(coords={"x": window * grid.spacing, "roller": lines["roller"]})
+    found["height"] = ("roller", "x"), heights * grid.height_step
+    found["overlap"] = "x", overlap * grid.height_step
+    for name, values in _segments(overlap, point, grid).items():
+        found[name] = "segment", values
+    return found
 
 
 def _segments(overlap, point, grid):

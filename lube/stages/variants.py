@@ -22,7 +22,7 @@ from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
-from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
+from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits, with_dims
 from lube.statistics import confidence
 from lube.study.study import Study
 from lube.surfaces.rare_contact import WINDOWS
@@ -120,23 +120,19 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     for each, film in films.items():
         if each.is_on_surface:
             found[each] = _on_surface(each, film, found[own], study, threads)
-    film = films[own]
-    shape, dims = film["film_thickness"].shape, ("variant", *POINT_DIMS)
-    table = {
-        name: (dims, np.reshape([found[each][name] for each in chosen.values()], (-1, *shape)))
-        for name in found[own]
-    }
+    film, each_found = films[own], [found[each] for each in chosen.values()]
     thickness = np.array([films[each]["film_thickness"].values for each in chosen.values()])
-    ratios = [_roughness_ratio(each, spec, film) for each in chosen.values()]
-    table |= {
-        "film_thickness": (dims, thickness),
-        "lambda_ratio": (dims, thickness / film["composite_rms_roughness"].item()),
-        "roughness_ratio": (dims, ratios),
-        "is_sampled": ("variant", [int(each in sampled) for each in chosen.values()]),
-        "film_formula": ((), study.film_formulas[0]),
+    sizes = thickness.shape
+    values = {name: np.reshape([one[name] for one in each_found], sizes) for name in found[own]}
+    values |= {
+        "film_thickness": thickness,
+        "lambda_ratio": thickness / film["composite_rms_roughness"].item(),
+        "roughness_ratio": [_roughness_ratio(each, spec, film) for each in chosen.values()],
+        "is_sampled": [int(each in sampled) for each in chosen.values()],
+        "film_formula": study.film_formulas[0],
     }
     coordinates = {name: film[name] for name in POINT_DIMS} | {"variant": list(VARIANTS)}
-    return label(xr.Dataset(table, coordinates), "variants")
+    return label(xr.Dataset(with_dims("variants", values), coordinates), "variants")
 
 
 def _film_by(study, inputs, formula, shape):
@@ -155,8 +151,7 @@ def _film(variant, study, inputs, film_by):
     shape = "computed" if variant.film_shape == "computed" else "flat"
     is_own = variant.film == study.film_formulas[0]
     if variant.film == "computed" and study.load_sharing == "none":
-        is_heated = study.inlet_shear_heating != "none"
-        thinner = film["inlet_shear_heating_factor"] if is_heated else 1.0
+        thinner = film["inlet_shear_heating_factor"] if study.inlet_shear_heating != "none" else 1.0
         film = film.assign(film_thickness=thinner * profile["central_film"])
         film["formula_place"] = "central"
     elif not is_own or (study.load_sharing != "none" and shape != study.film_shape):
@@ -217,8 +212,7 @@ def _on_surface(variant, film, own, study, threads):
     unknown = np.full(film["film_thickness"].size, np.nan)
     found = {f"{name}{end}": unknown for name in PROBABILITIES for end in LIMITS}
     if study.has("surface_response") and variant.gap.is_on_surfaces:
-        pair = replace(RoughPair.of(study), gap=variant.gap)
-        contact = surface_contact(pair, film, threads)
+        contact = surface_contact(replace(RoughPair.of(study), gap=variant.gap), film, threads)
         found = {name: contact[name].transpose(*POINT_DIMS).values.ravel() for name in found}
     name = "breakthrough_probability"
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -7,7 +7,7 @@ import xarray as xr
 
 from lube.digits import six_digits
 from lube.grid.films import FilmGroups, hertz_contact
-from lube.schema import label, values_with_limits
+from lube.schema import label, values_with_limits, with_dims
 from lube.statistics.confidence import mean_interval
 from lube.study.study import Study
 from lube.types import Datasets
@@ -30,17 +30,17 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     seen |= surfaces.surface_checks(study, threads) if study.line_spec.is_isotropic else {}
     seen |= films.film_checks(_contact(study, lubricant), waves)
     on_others = lines.on_grids(study, threads)
-    table = _outcomes(seen) | _curves(found) | _on_grids(on_others)
-    table["response"] = "response_wavelength", six_digits(waves)
-    table["printed_response"] = "response_wavelength", list(films.VENNER.values())
-    coordinates = {
+    values = _outcomes(seen) | _curves(found) | _on_grids(on_others)
+    values |= {
+        "response": six_digits(waves),
+        "printed_response": list(films.VENNER.values()),
         "check": np.arange(1, len(seen) + 1),
         "lambda_ratio": lines.LAMBDA_RATIOS,
         "grid": list(on_others),
         "grid_lambda_ratio": lines.LAMBDA_RATIOS[lines.FEW],
         "response_wavelength": list(films.VENNER),
     }
-    return label(xr.Dataset(table, coordinates), "verification")
+    return label(xr.Dataset(with_dims("verification", values)), "verification")
 
 
 def _contact(study, lubricant):
@@ -55,41 +55,38 @@ def _contact(study, lubricant):
 
 def _outcomes(deviations):
     rows, seen = CHECKS.loc[list(deviations)], np.array(list(deviations.values()))
-    table = {f"check_{name}": ("check", rows[name].tolist()) for name in _TEXTS}
+    values = {f"check_{name}": rows[name].tolist() for name in _TEXTS}
     allowed = rows["allowed"].to_numpy()
-    table["check_deviation"] = "check", six_digits(seen)
-    table["check_allowed"] = "check", allowed
     outcomes = np.where(seen <= allowed, "agrees", "differs")
     outcomes = np.where(np.isnan(allowed), "not judged", outcomes)
-    table["check_outcome"] = "check", outcomes
     for number in np.flatnonzero(outcomes == "differs"):
         one = rows.iloc[number]
         both, off = f"{one['subject']}, and {one['against']}", f"{seen[number]:.2g} {one['unit']}"
         log.warning(
             "check %d: %s, differ by %s; up to %g passes", number + 1, both, off, one["allowed"]
         )
-    return table
+    judged = {"check_deviation": six_digits(seen), "check_allowed": allowed}
+    return values | judged | {"check_outcome": outcomes}
 
 
 def _curves(found):
-    table = {"touching_bound": ("lambda_ratio", six_digits(found.bound))}
+    values = {"touching_bound": six_digits(found.bound)}
     for way in ("counted", "sampled"):
         for number, name in enumerate(lines.COUNTED):
             limits = map(six_digits, mean_interval(getattr(found, way)[..., number], 1.0))
-            table |= values_with_limits(f"{way}_{name}", limits, "lambda_ratio")
-    return table
+            values |= values_with_limits(f"{way}_{name}", limits)
+    return values
 
 
 def _on_grids(found):
     """Ratios to the study's own probabilities; all grids have the same random numbers."""
-    table, dims = {}, ("grid", "grid_lambda_ratio")
     of_pairs = np.stack(list(found.values()), axis=1)
     own = of_pairs[:, :1]  # of the study's grid, which is the first
     ratio = of_pairs.mean(axis=0) / own.mean(axis=0)
     scatter = (of_pairs - ratio * own).std(axis=0, ddof=1) / np.sqrt(len(own))
     error = 1.96 * scatter / own.mean(axis=0)
-    ends = ratio, ratio - error, ratio + error
+    ends, values = (ratio, ratio - error, ratio + error), {}
     for number, name in enumerate(lines.COUNTED):
         limits = (six_digits(each[..., number]) for each in ends)
-        table |= values_with_limits(f"{name}_ratio", limits, dims)
-    return table
+        values |= values_with_limits(f"{name}_ratio", limits)
+    return values

@@ -8,11 +8,10 @@ interpolation.
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from lube.statistics.one_pair import quantile, standard_error
-from lube.types import Array
+from lube.types import Array, Values
 
 FINER = 8
 """Levels of a curve of contacts for each film at which the probability is known."""
@@ -50,7 +49,7 @@ class Curve:
     sample_size: Array
     peak: int = 0
 
-    def logit_at(self, films: npt.ArrayLike) -> Array:
+    def logit_at(self, films: Values) -> Array:
         """Logit of the probability at given films, extrapolated linearly beyond the ends.
 
         Parameters
@@ -105,8 +104,7 @@ class Curve:
         if not self.peak:
             return np.nan
         logit, rising = scipy.special.logit(share), slice(self.peak + 1)
-        films = self.films[rising]
-        return np.interp(logit, self.logits[rising], films, left=np.nan, right=np.nan)
+        return np.interp(logit, self.logits[rising], self.films[rising], left=np.nan, right=np.nan)
 
 
 def falling_curve(
@@ -144,9 +142,8 @@ def falling_curve(
     falling = scipy.optimize.isotonic_regression(probabilities, increasing=False).x
     inside = (falling >= resolution) & (falling <= 1.0 - resolution)
     sinking, level = np.unique(-scipy.special.logit(falling[inside]), return_inverse=True)
-    films, sample_size = (
-        np.bincount(level, each[inside]) / np.bincount(level) for each in (films, sample_size)
-    )
+    films = np.bincount(level, films[inside]) / np.bincount(level)
+    sample_size = np.bincount(level, sample_size[inside]) / np.bincount(level)
     return Curve(films, -sinking, sample_size)
 
 
@@ -263,8 +260,7 @@ def film_interval(
     if np.isnan(share) or curve.films.size < 2:
         return np.nan, np.nan, np.nan
     known, limit = (share, ratio, realisations, noise), quantile(realisations)
-    last = curve.films.size - 1
-    films, distance = _distances(curve, curve.peak, last, *known)
+    films, distance = _distances(curve, curve.peak, curve.films.size - 1, *known)
     lower = np.interp(-limit, distance, films, left=-np.inf, right=films[-1])
     upper = np.interp(limit, distance, films, left=films[0], right=np.inf)
     if lower == -np.inf and curve.peak and distance[0] <= limit:

@@ -11,7 +11,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import scipy.special
 
 from lube.statistics.confidence import CONFIDENCE
@@ -46,7 +45,7 @@ def quantile(realisations: int, among: int = 1) -> float:
     return scipy.special.stdtrit(realisations - 1, level)
 
 
-def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:
+def repeat_factor(turns: Values) -> Values:
     r"""Variance of a share over several turns of one line, over that of one whole turn.
 
     In :math:`T = k + f` turns a fraction :math:`f` of the line passes :math:`k + 1` times and the

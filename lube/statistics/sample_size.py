@@ -1,7 +1,6 @@
 """Independent windows and effective sample size of one realisation of the roughness."""
 
 import numpy as np
-import numpy.typing as npt
 
 from lube.types import Array, Values
 
@@ -36,7 +35,7 @@ def independent_windows(travel: Values, width: Values, longest_wavelength: float
     return np.maximum(travel / (width + longest_wavelength), 1.0)
 
 
-def effective_sample_size(probabilities: Array, windows: npt.ArrayLike) -> Array:
+def effective_sample_size(probabilities: Array, windows: Values) -> Array:
     r"""Effective sample size of one realisation, from the scatter between realisations.
 
     It is the number of independent trials with the probability :math:`p` that would scatter as much

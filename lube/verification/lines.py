@@ -78,9 +78,8 @@ def films_of(study: Study, ratios: Array) -> xr.Dataset:
     forces = study.operating_grid.force
     half_width = study.rollers.contact_half_width(sorted(forces)[len(forces) // 2])
     films = "lambda_ratio", ratios * math.hypot(*study.line_spec.rms_height)
-    modulus = study.rollers.reduced_modulus
     table = {"film_thickness": films, "contact_half_width": half_width}
-    return xr.Dataset(table | {"reduced_modulus": modulus})
+    return xr.Dataset(table | {"reduced_modulus": study.rollers.reduced_modulus})
 
 
 def curves(study: Study, threads: int | None) -> Curves:
@@ -96,11 +95,10 @@ def curves(study: Study, threads: int | None) -> Curves:
     moments = pair_moments(spec)
     level = windows.thickness * spec.height_step
     width = 2.0 * windows.half_windows * spec.spacing
-    bound = scipy.special.ndtr(-level / math.sqrt(moments[0]))
-    bound = bound + width * crossing_rate(level, moments)
-    counts, samples = (
-        np.array(on_threads(one, range(PAIRS), threads)) for one in (counted, sampled)
-    )
+    first = scipy.special.ndtr(-level / math.sqrt(moments[0]))
+    bound = first + width * crossing_rate(level, moments)
+    counts = np.array(on_threads(counted, range(PAIRS), threads))
+    samples = np.array(on_threads(sampled, range(PAIRS), threads))
     return Curves(counts, samples[..., :2], samples[..., 2:] / spec.spacing, bound)
 
 
@@ -136,12 +134,11 @@ def line_checks(study: Study, found: Curves, threads: int | None) -> dict[str, f
     touching = found.sampled[..., 0]
     error = touching.std(axis=0, ddof=1) / math.sqrt(PAIRS)
     drawn = [[line.std() * spec.height_step for line in pair] for pair in pairs]
-    excess = (touching.mean(axis=0) - found.bound) / error
     return {
         "counted": errors_apart(found.counted[:, seen], found.sampled[:, seen]),
         "runs": percent_off(runs, crossing_rate(level, moments)),
         "sharp_runs": percent_off(broken[-1] / runs[-1], sharp[-1]),
-        "bound": float(np.max(excess)),
+        "bound": float(np.max((touching.mean(axis=0) - found.bound) / error)),
         "crossings": _crossings(spec, pairs),
         "rms": percent_off(drawn, spec.rms_height),
         "curvature": _curvature(study),

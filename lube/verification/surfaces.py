@@ -35,8 +35,7 @@ def surface_checks(study: Study, threads: int | None) -> dict[str, float]:
     """
     spec = study.line_spec
     surface, moments = rough_surface(spec), surface_moments(spec)
-    rms = np.sqrt(moments.height)
-    levels = LEVELS * rms
+    levels = LEVELS * np.sqrt(moments.height)
 
     def drawn(number):
         heights, *_ = surface.draw(np.random.default_rng((study.seed, number)))

@@ -124,8 +124,9 @@ def test_ranges_without_an_answer_are_refused_before_any_film(rollers, oil, monk
     def film_of_oil(*_, **__):
         raise AssertionError("a film was found")
 
-    monkeypatch.setattr("lube.calculator.film.film_of_oil", film_of_oil)
+    # First where it is imported, so that the first import of this module finds the original.
     monkeypatch.setattr("lube.calculator.duty_cycle.film_of_oil", film_of_oil)
+    monkeypatch.setattr("lube.calculator.film.film_of_oil", film_of_oil)
     point = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
     given = {"points": [point]} if verb == "duty" else point
     with pytest.raises(LubeError, match="bands: load_sharing: got iterated, need none"):
