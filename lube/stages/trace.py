@@ -166,12 +166,11 @@ def contact_window(
         touching = np.abs(window[overlap > 0]).max(initial=0)
         shown = np.abs(window) <= max(half_width / grid.spacing, touching + 1)
         window, heights, overlap = window[shown], heights[:, shown], overlap[shown]
-    found = xr.Dataset(coords={"x": window * grid.spacing, "roller": lines["roller"]})
-    found["height"] = ("roller", "x"), heights * grid.height_step
-    found["overlap"] = "x", overlap * grid.height_step
-    for name, values in _segments(overlap, point, grid).items():
-        found[name] = "segment", values
-    return found
+    heights, overlaps = heights * grid.height_step, overlap * grid.height_step
+    found = {"height": (("roller", "x"), heights), "overlap": ("x", overlaps)}
+    segments = _segments(overlap, point, grid).items()
+    found |= {name: ("segment", values) for name, values in segments}
+    return xr.Dataset(found, {"x": window * grid.spacing, "roller": lines["roller"]})
 
 
 def _segments(overlap, point, grid):
