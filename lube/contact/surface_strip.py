@@ -165,7 +165,8 @@ def surface_contact(
 
 def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:
     """Mean curvature of an overlap above which its boundary layer breaks, 1/m."""
-    return 0.5 * breaking_curvature(film["reduced_modulus"].item(), pair.layer)
+    layer = pair.layer.critical_thickness, pair.layer.shear_strength
+    return 0.5 * breaking_curvature(film["reduced_modulus"].item(), *layer)
 
 
 def surface_seeds(seed: int, count: int) -> list:
@@ -346,7 +347,8 @@ def _reach(spec, spacing):
     """Rows beyond which rows are independent, and over which contacts are followed."""
     longest = math.ceil(longest_waves(spec)[0] / spacing)
     # Ridges at an angle reach further along the rollers than a cut through one along the rollers.
-    oblique = max(math.prod(extents(line)) / line.lay_ratio for line in spec.lines)
+    lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
+    oblique = max(math.prod(extents(*lay)) / lay[0] for lay in lays)
     return longest, min(math.ceil(AROUND * oblique), longest)
 
 

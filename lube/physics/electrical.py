@@ -1,5 +1,7 @@
 """Electrical resistance between the rollers, and the circuit that measures it."""
 
+from typing import Protocol
+
 import numpy as np
 
 from lube.physics.hertz import hertz_gap
@@ -13,6 +15,22 @@ _POINTS = ((2.0 * np.arange(_PARTS)[:, None] + 1.0 + _RULE[0]) / _PARTS - 1.0).r
 _WEIGHTS = np.tile(_RULE[1] / _PARTS, _PARTS)
 _WIDE = 9.0
 """Standard deviations beyond which a normal density is left out."""
+
+
+class Circuit(Protocol):
+    """Voltage divider: a source in series with a resistor, the leads and the contact.
+
+    Attributes
+    ----------
+    bias_voltage : float
+        Voltage U of the source, V.
+    series_resistance, lead_resistance : float
+        Resistances R_s of the resistor and R_l of the leads, ohm.
+    """
+
+    bias_voltage: float
+    series_resistance: float
+    lead_resistance: float
 
 
 def contact_resistance(contact_length: Values, resistivity: float) -> Values:
@@ -41,7 +59,7 @@ def contact_resistance(contact_length: Values, resistivity: float) -> Values:
         return resistivity / np.asarray(contact_length, float)
 
 
-def divider_voltage(resistance: Values, circuit) -> Values:
+def divider_voltage(resistance: Values, circuit: Circuit) -> Values:
     r"""Voltage logged over leads and contact at a steady contact resistance.
 
     .. math:: V = U \frac{R_l + R}{R_s + R_l + R}
@@ -50,10 +68,8 @@ def divider_voltage(resistance: Values, circuit) -> Values:
     ----------
     resistance : float or numpy.ndarray
         Contact resistance :math:`R`, ohm; may be infinite.
-    circuit : lube.study.rig_settings.Rig
-        Voltage divider: a source of ``bias_voltage`` :math:`U`, V, in series with a resistor, the
-        leads and the contact; ``series_resistance`` :math:`R_s` and ``lead_resistance``
-        :math:`R_l`, ohm.
+    circuit : Circuit
+        The voltage divider.
 
     Returns
     -------
@@ -71,7 +87,7 @@ def divider_voltage(resistance: Values, circuit) -> Values:
     return circuit.bias_voltage / (1.0 + ratio)
 
 
-def resistance_from_voltage(voltage: Values, circuit) -> Values:
+def resistance_from_voltage(voltage: Values, circuit: Circuit) -> Values:
     r"""Contact resistance that follows from a logged voltage; inverse of `divider_voltage`.
 
     .. math:: R = R_s \frac{V}{U - V} - R_l
@@ -80,8 +96,8 @@ def resistance_from_voltage(voltage: Values, circuit) -> Values:
     ----------
     voltage : float or numpy.ndarray
         Logged voltage :math:`V`, V.
-    circuit : lube.study.rig_settings.Rig
-        As in `divider_voltage`.
+    circuit : Circuit
+        The voltage divider.
 
     Returns
     -------

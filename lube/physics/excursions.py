@@ -287,10 +287,12 @@ def passing_contacts(
         density += weight * decay * math.sqrt(0.5 * math.pi) * (begin + end)
         # At a column a summit rises above the level by its own change and along the level's slope.
         rising = mean_overlap(-p / a * slope, np.sqrt(np.maximum(c - p**2 / a, 1e-24 * c)))
-        appearing += spacing * np.sum(weight * spread * decay * np.maximum(order, 0.0) * rising)
+        more = weight * spread * decay * np.maximum(order, 0.0) * rising
+        appearing += spacing * np.sum(more)
         if has_edges:
-            half = 0.5 * weight * decay
-            first, last = (half * (np.sqrt(c) + sign * p / spread) for sign in (-1.0, 1.0))
+            first, last = (
+                0.5 * weight * decay * (np.sqrt(c) + sign * p / spread) for sign in (-1.0, 1.0)
+            )
             appearing += first[0] + last[-1]
     number = spacing * np.sum(density)
     if has_edges:
@@ -410,7 +412,9 @@ def _apart(values, axes=1):
     return np.reshape(values, (-1, *(1,) * axes))
 
 
-def breaking_curvature(reduced_modulus: float, boundary_layer) -> float:
+def breaking_curvature(
+    reduced_modulus: float, critical_thickness: float, shear_strength: float
+) -> float:
     r"""Curvature of a summit above which its boundary layer breaks (paper, Eqs. 5 and 6).
 
     A parabolic summit of curvature :math:`\kappa` that overlaps over the length D carries
@@ -425,8 +429,10 @@ def breaking_curvature(reduced_modulus: float, boundary_layer) -> float:
     ----------
     reduced_modulus : float
         Reduced modulus :math:`E^*`, Pa.
-    boundary_layer : lube.study.rollers.BoundaryLayer
-        Its critical thickness :math:`h_c`, m, and limiting shear stress :math:`\tau_0`, Pa.
+    critical_thickness : float
+        Critical thickness :math:`h_c` of the boundary layer, m.
+    shear_strength : float
+        Limiting shear stress :math:`\tau_0` of the boundary layer, Pa.
 
     Returns
     -------
@@ -435,10 +441,7 @@ def breaking_curvature(reduced_modulus: float, boundary_layer) -> float:
 
     Examples
     --------
-    >>> from lube.study.rollers import BoundaryLayer
-    >>> layer = BoundaryLayer(critical_thickness="5 nm", shear_strength="1 MPa")
-    >>> f"{breaking_curvature(1.154e11, layer):.0f}"
+    >>> f"{breaking_curvature(1.154e11, 5e-9, 1e6):.0f}"
     '5445'
     """
-    strength = math.pi * boundary_layer.shear_strength
-    return strength / (reduced_modulus * boundary_layer.critical_thickness)
+    return math.pi * shear_strength / (reduced_modulus * critical_thickness)

@@ -136,13 +136,13 @@ def stretched(wavenumber: Values, direction: Array, ratio: float, angle: float) 
     return ridges * cosine - across_lay * sine, ridges * sine + across_lay * cosine
 
 
-def extents(line) -> tuple[float, float]:
+def extents(ratio: float, angle: float) -> tuple[float, float]:
     """Reach of a stretched circle along rolling and along the rollers, over its radius.
 
     Parameters
     ----------
-    line : lube.study.line_spec.RoughLine
-        Its ``lay_ratio`` and ``lay_angle`` say how the surface is stretched.
+    ratio, angle
+        As in `unstretched`.
 
     Returns
     -------
@@ -151,12 +151,10 @@ def extents(line) -> tuple[float, float]:
 
     Examples
     --------
-    >>> from lube.stages import RoughLine
-    >>> lay = {"lay_ratio": 4.0, "lay_angle": 90.0}
-    >>> extents(RoughLine(points=1000, rms_height=2e-7, q_min=1e4, q_max=1e6, **lay))
+    >>> extents(4.0, 90.0)
     (1.0, 4.0)
     """
-    ratio, (cosine, sine) = line.lay_ratio, cosine_and_sine(line.lay_angle)
+    cosine, sine = cosine_and_sine(angle)
     return math.hypot(ratio * cosine, sine), math.hypot(cosine, ratio * sine)
 
 

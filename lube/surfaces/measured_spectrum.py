@@ -115,9 +115,10 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
         raise DataError(f"{surface.name}: its spectrum is empty, need rough heights on more points")
     whole = windowed if settings.long_cutoff is None else mean_square
     density = with_power(wave_vector, density, estimates, whole - (windowed - inside))
-    transfer = power_transfer(wave_vector, settings)
+    cutoffs = settings.long_cutoff, settings.short_cutoff
+    transfer = power_transfer(wave_vector, *cutoffs)
     if lay[0] > 1.0:
-        transfer = _ring_transfer(surface, 2.0 * np.pi / shortest, settings, lay)
+        transfer = _ring_transfer(surface, 2.0 * np.pi / shortest, cutoffs, lay)
     if of_surface and surface.heights.ndim == 1:
         # A profile's filter acts on the profile, a surface's on the surface.
         density, estimates = _inverted(wave_vector, density / transfer, estimates)
@@ -338,12 +339,12 @@ def _ring_means(power, lengths, q_max, ratio=1.0, angle=90.0):
     return middle, 2.0 * np.pi * middle * surface_density / ratio, estimates, inside
 
 
-def _ring_transfer(surface, q_max, settings, lay):
+def _ring_transfer(surface, q_max, cutoffs, lay):
     """Fraction of power that filters leave of a ring's waves, which differ in length with a lay."""
     along, across = _wave_vectors(map_power(surface.heights), surface.lengths)
     sums = _sums_by_bin(unstretched(along, across, *lay), min(surface.lengths), q_max)
     filled = sums() > 0
-    return sums(power_transfer(np.hypot(along, across), settings))[filled] / sums()[filled]
+    return sums(power_transfer(np.hypot(along, across), *cutoffs))[filled] / sums()[filled]
 
 
 def _column_means(power, length, q_max):
@@ -379,7 +380,8 @@ def _inverted(wave_vector, density, estimates):
         return line_of_profile(places, monotone(values, number), wave_vector)
 
     fit = monotone(means, number)
-    noise = np.random.default_rng(0).gamma(number, 1.0 / number, (_REPLICATES, number.size))
+    generator = np.random.default_rng(0)
+    noise = generator.gamma(number, 1.0 / number, (_REPLICATES, number.size))
     replicates = [invert(fit * factors) for factors in noise]
     spread = np.std(replicates, axis=0) / np.mean(replicates, axis=0)
     return invert(means), np.maximum(spread**-2.0, 1.0)

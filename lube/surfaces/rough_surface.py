@@ -181,7 +181,10 @@ def field(waves: Array, points: tuple[int, int]) -> Array:
 
 def longest_waves(spec: LineSpecLike) -> Pair:
     """Longest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
-    waves = [np.multiply(2.0 * math.pi / line.q_min, extents(line)) for line in spec.lines]
+    waves = [
+        np.multiply(2.0 * math.pi / line.q_min, extents(line.lay_ratio, line.lay_angle))
+        for line in spec.lines
+    ]
     along, across = np.max(waves, axis=0).tolist()
     return across, along
 
@@ -189,8 +192,12 @@ def longest_waves(spec: LineSpecLike) -> Pair:
 def shortest_waves(spec: LineSpecLike) -> Pair:
     """Shortest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
     # A cut through a ridge along one side, over its reach along the other.
-    lines = spec.lines
-    waves = [one.shortest_wavelength * one.lay_ratio / np.array(extents(one)) for one in lines]
+    waves = [
+        line.shortest_wavelength
+        * line.lay_ratio
+        / np.array(extents(line.lay_ratio, line.lay_angle))
+        for line in spec.lines
+    ]
     return tuple(np.min(waves, axis=0).tolist())
 
 

@@ -150,7 +150,8 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
         # The drift is a straight line.
         heights = heights + step_at_join(heights) * np.linspace(-0.5, 0.5, heights.size)
     spacing = used_directions(topography.spacing, settings)
-    return replace(topography, heights=gaussian_filter(heights, spacing, settings))
+    cutoffs = settings.long_cutoff, settings.short_cutoff
+    return replace(topography, heights=gaussian_filter(heights, spacing, *cutoffs, settings.closed))
 
 
 def used_directions(sides: tuple[float, ...], settings: Preparation) -> tuple[float, ...]:
@@ -299,7 +300,13 @@ def fill_holes(heights: Array) -> Array:
     return np.asarray(surface.interpolate_undefined_data().heights())
 
 
-def gaussian_filter(heights: Array, spacing: tuple[float, ...], settings: Preparation) -> Array:
+def gaussian_filter(
+    heights: Array,
+    spacing: tuple[float, ...],
+    long_cutoff: float | None,
+    short_cutoff: float | None,
+    closed: bool = False,
+) -> Array:
     """Filter heights by the Gaussian filters of ISO 16610-21 and -61.
 
     Parameters
@@ -309,9 +316,10 @@ def gaussian_filter(heights: Array, spacing: tuple[float, ...], settings: Prepar
     spacing : tuple of float
         Distance of neighbouring points in each direction, m; with the first only, a map is filtered
         along it alone.
-    settings : Preparation
-        Cutoffs of long and of short waves, with None that filter is not applied; and whether the
-        last point is followed by the first.
+    long_cutoff, short_cutoff : float or None
+        Cutoffs of long and of short waves, m; with None that filter is not applied.
+    closed : bool, optional
+        Whether the last point is followed by the first.
 
     Returns
     -------
@@ -321,25 +329,26 @@ def gaussian_filter(heights: Array, spacing: tuple[float, ...], settings: Prepar
     Examples
     --------
     >>> wave = np.cos(2 * np.pi * np.arange(4000) / 100)
-    >>> settings = Preparation("isotropic", long_cutoff=100.0)
-    >>> f"{gaussian_filter(wave, (1.0,), settings)[1950:2050].max():.3f}"
+    >>> f"{gaussian_filter(wave, (1.0,), 100.0, None)[1950:2050].max():.3f}"
     '0.500'
     """
-    if settings.short_cutoff is not None:
-        heights = _smoothed(heights, spacing, settings.short_cutoff, settings.closed)
-    if settings.long_cutoff is not None:
-        heights = heights - _smoothed(heights, spacing, settings.long_cutoff, settings.closed)
+    if short_cutoff is not None:
+        heights = _smoothed(heights, spacing, short_cutoff, closed)
+    if long_cutoff is not None:
+        heights = heights - _smoothed(heights, spacing, long_cutoff, closed)
     return heights
 
 
-def power_transfer(wave_vector: Array, settings: Preparation) -> Array:
+def power_transfer(
+    wave_vector: Array, long_cutoff: float | None, short_cutoff: float | None
+) -> Array:
     """Fraction of a wave's power that passes the Gaussian filters.
 
     Parameters
     ----------
     wave_vector : numpy.ndarray
         Shape (n,), rad/m.
-    settings : Preparation
+    long_cutoff, short_cutoff : float or None
         As in `gaussian_filter`.
 
     Returns
@@ -349,16 +358,14 @@ def power_transfer(wave_vector: Array, settings: Preparation) -> Array:
 
     Examples
     --------
-    >>> settings = Preparation("isotropic", long_cutoff=1e-3)
-    >>> power_transfer(2 * np.pi / np.array([1e-3, 1e-4]), settings).round(3)
+    >>> power_transfer(2 * np.pi / np.array([1e-3, 1e-4]), 1e-3, None).round(3)
     array([0.25, 1.  ])
     """
     passed = np.ones_like(wave_vector)
-    if settings.short_cutoff is not None:
-        passed = passed * _transmission(wave_vector, settings.short_cutoff)
-    if settings.long_cutoff is not None:
-        waves = settings.long_cutoff * wave_vector / (2 * np.pi)  # within the cutoff
-        passed = passed * -np.expm1(-np.log(2.0) * waves**2)
+    if short_cutoff is not None:
+        passed = passed * _transmission(wave_vector, short_cutoff)
+    if long_cutoff is not None:
+        passed = passed * -np.expm1(-np.log(2.0) * (long_cutoff * wave_vector / (2 * np.pi)) ** 2)
     return passed**2
 
 

@@ -150,7 +150,9 @@ def line_checks(study: Study, found: Curves, threads: int | None) -> dict[str, f
 
 
 def _curvature_limit(study):
-    return breaking_curvature(study.rollers.reduced_modulus, study.boundary_layer)
+    layer = study.boundary_layer
+    strengths = layer.critical_thickness, layer.shear_strength
+    return breaking_curvature(study.rollers.reduced_modulus, *strengths)
 
 
 def _crossings(spec, pairs):

@@ -13,7 +13,6 @@ from lube.physics.excursions import (
     sharp_summit_share,
     sharp_surface_summit_share,
 )
-from lube.study.rollers import BoundaryLayer
 
 MOMENTS = 2.0, 3.0, 40.0
 SURFACE = SurfaceMoments(2.0, along=1.5, across=1.5, mixed=0.0, curvature=40.0)
@@ -55,8 +54,7 @@ def test_sharp_summits_by_numerical_integration(level):
 def test_the_layer_breaks_at_the_curvature_where_the_remaining_thickness_is_critical():
     """Of a parabola of any height: Eqs. 5 and 6 by hand."""
     modulus, critical, strength = 1.154e11, 5e-9, 1e6
-    layer = BoundaryLayer(critical_thickness="5 nm", shear_strength="1 MPa")
-    curvature = breaking_curvature(modulus, layer)
+    curvature = breaking_curvature(modulus, critical, strength)
     for height in (1e-9, 3e-8):
         length = np.sqrt(8.0 * height / curvature)
         force = modulus * 2.0 / 3.0 * length * height

@@ -34,7 +34,7 @@ def test_hurst_exponent_of_a_power_law_is_exact(hurst):
 
 
 def test_filters_do_not_change_the_fits():
-    passed = power_transfer(Q, Preparation("isotropic", long_cutoff=3e-4, short_cutoff=1e-5))
+    passed = power_transfer(Q, 3e-4, 1e-5)
     filtered = LineSpectrum("a", Q, Q**-2.4 * passed, np.full(40, 1e6), passed, True)
     assert hurst_exponent(filtered, WAVES).value == pytest.approx(0.7, abs=1e-4)
     assert roll_off(filtered, WAVES) is None
