@@ -156,8 +156,9 @@ def surface_contact(
     points = thickness.copy(data=np.arange(thickness.size).reshape(shape))
 
     def passage_width(slip, point):
-        known = pair.spec, pair.length, slip
-        return strips[point].passage_width(*known) if point in looked_at else np.nan
+        if point not in looked_at:
+            return np.nan
+        return strips[point].passage_width(pair.spec, pair.length, slip)
 
     widths = np.vectorize(passage_width, otypes=[float])
     return found.assign(passage_width=xr.apply_ufunc(widths, slide_to_roll_ratio, points))

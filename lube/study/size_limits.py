@@ -1,8 +1,12 @@
 """Refuse a study whose results do not fit a workstation, before anything is computed."""
 
 import math
+from typing import TYPE_CHECKING
 
 from lube.errors import StudyError
+
+if TYPE_CHECKING:
+    from lube.study.study import Study
 
 MOST_NUMBERS = 10**9
 """Largest array, in numbers: 8 GB."""
@@ -17,12 +21,12 @@ FOLDED_NUMBERS = 10_000
 """Approximate count of numbers kept for each record: its folded revolution and its trace."""
 
 
-def check_sizes(study) -> None:
+def check_sizes(study: "Study") -> None:
     """Refuse a study too large for a workstation's memory or for Snakemake to plan.
 
     Parameters
     ----------
-    study : lube.study.study.Study
+    study : Study
         The study, its parts checked.
 
     Raises

@@ -1,12 +1,18 @@
 """Refusal of viscosities that contradict one another, or that no law can fit."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from lube.errors import RecordError, located
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE
 from lube.types import File
+
+if TYPE_CHECKING:  # a record checks its points
+    from lube.study.lubricant_record import LubricantRecord
 
 ROUNDING = 1e-6
 """Temperatures converted from K or degF to degC may miss a limit by this much, degC."""
@@ -24,12 +30,12 @@ Its integral runs on beyond the measured pressures; with this factor about a fif
 """
 
 
-def check_points(record, where: File) -> None:
+def check_points(record: LubricantRecord, where: File) -> None:
     """Refuse viscosities that contradict one another, or that no law can fit.
 
     Parameters
     ----------
-    record : lube.study.lubricant_record.LubricantRecord
+    record : LubricantRecord
         The lubricant, with its points.
     where : str or Path
         Where they come from, for the message.
