@@ -68,6 +68,9 @@ def simulated_revolutions(
         The next revolution of this pair at this point.
     """
     of_pairs = np.reshape(study.rig_realisations, (study.rig.pairs, -1)).tolist()
+    count = points.sizes["operating_point"]
+    each = [points.isel(operating_point=number) for number in range(count)]
+    speeds = [[point[name].item() for name in _MOTION] for point in each]
     for pair, numbers in enumerate(of_pairs):
         if study.rig.has_surfaces:
             runs = _surface_runs(study, points, numbers[0], threads)
@@ -77,10 +80,8 @@ def simulated_revolutions(
             for turn, contacts in enumerate(turns):
                 for number, contact in enumerate(contacts, begin):
                     seed = (study.seed, numbers[0], number + 1, turn)
-                    point = points.isel(operating_point=number)
-                    speed, slip = (point[name].item() for name in _MOTION)
-                    time_step = step / max(surface_speeds(speed, slip))
-                    yield pair, number, recorded(contact, point, study, seed, time_step)
+                    time_step = step / max(surface_speeds(*speeds[number]))
+                    yield pair, number, recorded(contact, each[number], study, seed, time_step)
             log.info("simulated rig: pair %d, %d operating points", pair + 1, number + 1)
 
 
