@@ -6,7 +6,7 @@ from typing import TypedDict, get_args
 
 import numpy as np
 
-from lube.calculator.arguments import amount, single
+from lube.calculator.arguments import amount, bare_number, single
 from lube.errors import StudyError, right_one, shown
 from lube.grid.gap import PLAIN, Gap
 from lube.study.study import Study
@@ -17,6 +17,7 @@ from lube.types import (
     LoadSharing,
     OneAmount,
     RoughnessDeformation,
+    Values,
 )
 
 FORMULA = "pan-hamrock"
@@ -65,6 +66,8 @@ class Choices:
     inlet_meniscus : float, optional
         Distance of the oil's meniscus before the line of centres, m; None if the contact is fully
         flooded.
+    slip : float or xarray.DataArray
+        Slide-to-roll ratio, of all operating points or of each.
     """
 
     gap: Gap = PLAIN
@@ -72,6 +75,7 @@ class Choices:
     load_sharing: LoadSharing = "none"
     inlet_shear_heating: InletHeating = "none"
     inlet_meniscus: float | None = None
+    slip: Values = 0.0
 
     @classmethod
     def of(
@@ -80,6 +84,7 @@ class Choices:
         contact_model: ContactModel | Sequence[ContactModel] = "line",
         inlet_shear_heating: InletHeating = "none",
         inlet_meniscus: OneAmount | None = None,
+        slide_to_roll_ratio: float = 0.0,
         load_sharing: LoadSharing = "none",
     ) -> "Choices":
         """Choose by the values of a study's keys.
@@ -89,6 +94,7 @@ class Choices:
         StudyError
             If a study has no such choice.
         """
+        slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
         film = {"load_sharing": load_sharing, "inlet_shear_heating": inlet_shear_heating}
         for name, value in (vars(gap) | film).items():
             _check_choice(name, value, get_args(Study.model_fields[name].annotation))
@@ -97,14 +103,17 @@ class Choices:
             _check_choice("contact_model", model, get_args(ContactModel))
         if inlet_meniscus is not None:
             inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
-        return cls(gap, models, **film, inlet_meniscus=inlet_meniscus)
+        return cls(gap, models, **film, inlet_meniscus=inlet_meniscus, slip=slip)
 
     @classmethod
     def of_smooth_rollers(
-        cls, inlet_shear_heating: InletHeating, inlet_meniscus: OneAmount | None
+        cls,
+        inlet_shear_heating: InletHeating,
+        inlet_meniscus: OneAmount | None,
+        slide_to_roll_ratio: float,
     ) -> "Choices":
         """As `of`, of a film without contact, which no lines or surfaces can refuse."""
-        choices = cls.of(inlet_shear_heating=inlet_shear_heating, inlet_meniscus=inlet_meniscus)
+        choices = cls.of(PLAIN, "line", inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
         return replace(choices, models=())
 
 

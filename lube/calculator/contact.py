@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer
-from lube.calculator.arguments import bare_number, check_realisations, checked, conditions
+from lube.calculator.arguments import check_realisations, checked, conditions
 from lube.calculator.bands import Assumptions
 from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
 from lube.calculator.film import conditions_of, film_in_si, formula_names, of_film, with_remarks
@@ -153,14 +153,16 @@ def contact_probability(
     >>> bool(found.tail_breakthrough_probability_lower > 0)
     True
     """
-    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus, load_sharing)
+    choices = Choices.of(
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
+    )
+    slip = choices.slip
     pair = rollers.rough_pair(seed, gap)
     check_realisations(realisations, seed)
     assumed = Assumptions(bands, rollers, oil, choices, formula_names(film_formula)[0], seed)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices)
     found = of_film(table)
     if "line" in choices.models:
         contact = ensemble(pair, table, realisations, slip)
@@ -170,7 +172,7 @@ def contact_probability(
     if "surface_load_share" in table:
         found["surface_load_share"] = table["surface_load_share"]
     if assumed.wanted:
-        samples = assumed.probabilities(conditions_of(table) | {"slide_to_roll_ratio": slip})
+        samples = assumed.probabilities(conditions_of(table, choices))
         found = found.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
     return with_remarks(found, table, rollers)
 

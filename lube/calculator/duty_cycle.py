@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -135,14 +136,16 @@ def duty(
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
     gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus, load_sharing)
+    slip = _slip(columns)
+    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus, 0.0, load_sharing)
+    choices = replace(choices, slip=slip)
     check_realisations(realisations, seed)
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
-    assumed, slip = Assumptions(bands, rollers, oil, choices, formula, seed), _slip(columns)
+    assumed = Assumptions(bands, rollers, oil, choices, formula, seed)
     assumed.check(given)
     turning = rollers.pair.with_radii(given["radius"], given["second_radius"])
     check_contact(rollers, turning.contact_half_width(given["force"]), choices)
-    table = film_of_oil(oil, turning, given, [formula], **film_model(rollers, choices, slip))
+    table = film_of_oil(oil, turning, given, [formula], **film_model(rollers, choices))
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     table = table.assign(force=given["force"])
     pair = rollers.rough_pair(seed, gap)

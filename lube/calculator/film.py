@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import Point, bare_number, checked, conditions
+from lube.calculator.arguments import Point, checked, conditions
 from lube.calculator.choices import FORMULA, Choices
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
@@ -89,9 +89,8 @@ def film(
     >>> f"{found.film_thickness.item():.2f} um, lambda ratio {found.lambda_ratio.item():.1f}"
     '1.05 um, lambda ratio 3.7'
     """
-    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus)
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
+    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices)
     return with_remarks(of_film(table), table, rollers)
 
 
@@ -108,7 +107,6 @@ def film_in_si(
     temperature: Amount,
     film_formula: str | Sequence[str],
     choices: Choices,
-    slip: float = 0.0,
 ) -> xr.Dataset:
     """All variables of the film table in SI units, and the oil's viscosity.
 
@@ -117,7 +115,7 @@ def film_in_si(
     point = conditions(force, speed, temperature, rollers.pair.first.radius)
     formulas = formula_names(film_formula)
     check_contact(rollers, rollers.pair.contact_half_width(point["force"].values), choices)
-    table = film_of_oil(oil, rollers.pair, point, formulas, **film_model(rollers, choices, slip))
+    table = film_of_oil(oil, rollers.pair, point, formulas, **film_model(rollers, choices))
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.assign_coords(force=point["force"], speed=point["speed"])
     table = table.transpose(*dims, ..., missing_dims="ignore")
@@ -170,15 +168,15 @@ def formula_names(film_formula: str | Sequence[str]) -> list[str]:
     return formulas
 
 
-def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any]:
-    """Arguments of `film_of_oil` for some choices and a slide-to-roll ratio."""
-    choices.gap.check_slip(slip)
+def film_model(rollers: Rollers, choices: Choices) -> dict[str, Any]:
+    """Arguments of `film_of_oil` for some choices."""
+    choices.gap.check_slip(choices.slip)
     answered = {"line": "answered_lines", "surface": "answered_surfaces"}
     used = choices.models if choices.gap.is_answered else ()
     has_surfaces = "surface" in choices.models or choices.load_sharing != "none"
     return {
         "with_shape": choices.gap.has_shape,
-        "slide_to_roll_ratio": slip,
+        "slide_to_roll_ratio": choices.slip,
         "rough_surfaces": rollers.lines if has_surfaces else None,
         "load_sharing": choices.load_sharing,
         "inlet_shear_heating": choices.inlet_shear_heating,
@@ -235,10 +233,11 @@ def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answ
     return described(found.assign_attrs(remarks="\n".join(filter(None, notes))))
 
 
-def conditions_of(table: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Force in N, speed in rpm and temperature in degC of a table from `film_in_si`.
+def conditions_of(table: xr.Dataset, choices: Choices) -> dict[str, xr.DataArray | float]:
+    """Force in N, speed in rpm, temperature in degC and slip of a table from `film_in_si`.
 
     And ``viscosity_factor`` if the table has it.
     """
     names = "force", "speed", "temperature", "viscosity_factor"
-    return {name: table[name] for name in names if name in table.coords}
+    conditions = {name: table[name] for name in names if name in table.coords}
+    return conditions | {"slide_to_roll_ratio": choices.slip}

@@ -64,7 +64,8 @@ class FilmSearch:
     """Search for the films at which the probability of contact equals a share of time.
 
     Contact of lines is counted where the realisations show enough of it, else sampled; that of the
-    surface is sampled.
+    surface is sampled. It is counted in alignments of pure rolling, in which it is as frequent as
+    with slip.
 
     Parameters
     ----------
@@ -121,7 +122,7 @@ class FilmSearch:
             return table(np.interp(here, np.arange(levels.size), levels), choices)
 
         def points_at(sought):
-            return conditions_of(table_at(sought, plain))
+            return conditions_of(table_at(sought, plain), plain)
 
         ends = ratios[known[[0, -1]]]
         films = self.films(whole["contact_half_width"].item(), points_at, table_at, ends)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from lube.calculator.answers import Answer, variable_of
-from lube.calculator.arguments import amount, bare_number, checked, single
+from lube.calculator.arguments import amount, checked, single
 from lube.calculator.choices import FORMULA, Choices
 from lube.calculator.film import film_in_si, with_remarks
 from lube.calculator.oil import Oil
@@ -71,9 +71,8 @@ def indicators(
     >>> f"{resistance.item():.2f} {resistance.attrs['units']}"
     '0.56 N'
     """
-    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus)
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices, slip)
+    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices)
     pair, groups = rollers.pair, FilmGroups.of(table)
     scale = 2.0 * pair.reduced_modulus * pair.reduced_radius
     resistance = scale * groups.of_profiles("rolling_resistance")

@@ -3,7 +3,7 @@
 import numpy as np
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import bare_number, checked, conditions, one_name, single
+from lube.calculator.arguments import checked, conditions, one_name, single
 from lube.calculator.choices import FORMULA, SEED, Choices
 from lube.calculator.film import check_contact, film_in_si, film_model
 from lube.calculator.oil import Oil
@@ -70,16 +70,16 @@ def trace(
     >>> f"{found.time.values[-1]:.0f} ms"
     '120 ms'
     """
-    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     gap, model = Gap(film_shape, roughness_deformation), one_name("contact_model", contact_model)
-    choices = Choices.of(gap, model, inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(gap, model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
+    slip = choices.slip
     formula = one_name("film_formula", film_formula)
     one = _one_point(rollers, oil, force, speed, temperature)
     if contact_model == "surface":
-        film = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
+        film = film_in_si(rollers, oil, force, speed, temperature, formula, choices)
         return _surface_trace(rollers, film, rollers.rough_pair(seed, gap), slip)
     check_contact(rollers, rollers.pair.contact_half_width(*one[2]), choices)
-    model = film_model(rollers, choices, slip) | {"slide_to_roll_ratio": [slip]}
+    model = film_model(rollers, choices) | {"slide_to_roll_ratio": [slip]}
     table = film_table(*one, [formula], **model)
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     lines = roughness_batch(rollers.lines, seed, [0])

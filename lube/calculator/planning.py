@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer
-from lube.calculator.arguments import amount, bare_number, check_realisations, checked, one_name
+from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
 from lube.calculator.contact import ensemble
 from lube.calculator.film import film_in_si, of_film, with_remarks
@@ -111,16 +111,16 @@ def plan(
     >>> bool(found.half_width.sel(quantity="film thickness") < 0.1)
     True
     """
-    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     turns = amount("turns", (turns, "1"), "1", above=0.0)
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else ["line", model]
     gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(gap, models, inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(gap, models, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
+    slip = choices.slip
     check_realisations(realisations, seed)
     formula = one_name("film_formula", film_formula)
-    table = film_in_si(rollers, oil, force, speed, temperature, formula, choices, slip)
+    table = film_in_si(rollers, oil, force, speed, temperature, formula, choices)
     reading = _reading_error(rollers, table, gap, slip, rig, thresholds.values, seed)
     records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, gap)
     if model == "surface":

@@ -115,6 +115,7 @@ def required_viscosity(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -127,8 +128,8 @@ def required_viscosity(
     rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each. The pressure-viscosity coefficient and
         the density are those of the oil at that temperature.
-    inlet_shear_heating, inlet_meniscus
-        As in `lube.film`, in pure rolling. Computed heating takes some seconds more.
+    inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        As in `lube.film`. Computed heating takes some seconds more.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -160,7 +161,9 @@ def required_viscosity(
         return found.assign_coords(viscosity_factor=("factor", factors))
 
     gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
     search = FilmSearch(assumed, share, realisations)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
@@ -184,6 +187,7 @@ def required_speed(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -195,8 +199,8 @@ def required_speed(
     ----------
     rollers, oil, force, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
-    inlet_shear_heating, inlet_meniscus
-        As in `lube.film`, in pure rolling. Computed heating takes some seconds more.
+    inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        As in `lube.film`. Computed heating takes some seconds more.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -219,7 +223,9 @@ def required_speed(
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
 
     gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
     search = FilmSearch(assumed, share, realisations)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
@@ -240,6 +246,7 @@ def required_temperature(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -251,8 +258,8 @@ def required_temperature(
     ----------
     rollers, oil, force, speed, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
-    inlet_shear_heating, inlet_meniscus
-        As in `lube.film`, in pure rolling. Computed heating takes some seconds more.
+    inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        As in `lube.film`. Computed heating takes some seconds more.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -276,7 +283,9 @@ def required_temperature(
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
 
     gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
     search = FilmSearch(assumed, share, realisations)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
@@ -298,6 +307,7 @@ def required_roughness(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -313,8 +323,8 @@ def required_roughness(
     ----------
     rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
-    inlet_shear_heating, inlet_meniscus
-        As in `lube.film`, in pure rolling.
+    inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        As in `lube.film`.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -333,7 +343,9 @@ def required_roughness(
     """
     one = one_name("film_formula", film_formula)
     gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+    )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
     search = FilmSearch(assumed, share, realisations)
     film = film_in_si(rollers, oil, force, speed, temperature, one, choices)
@@ -345,7 +357,8 @@ def required_roughness(
         return scaled_film(film, xr.DataArray(ratios / own, dims="film"))
 
     def points_at(ratios):
-        return conditions_of(film) | {"roughness_factor": xr.DataArray(own / ratios, dims="film")}
+        factors = xr.DataArray(own / ratios, dims="film")
+        return conditions_of(film, choices) | {"roughness_factor": factors}
 
     found = search.films(film["contact_half_width"].item(), points_at, table_at, own=own)
     ratios = found["lambda_ratio"]

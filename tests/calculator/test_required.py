@@ -75,6 +75,24 @@ def test_the_viscosity_gives_that_film(rollers, oil, needed):
     assert kinematic == pytest.approx(found["dynamic_viscosity"].item())
 
 
+def test_what_is_found_for_an_inlet_that_slip_heats_has_the_share(rollers, oil, busy):
+    """Put in again; without the slip there is less contact."""
+    slip, heated = {"slide_to_roll_ratio": 1.0}, {"inlet_shear_heating": "wilson-sheu-1983"}
+    given = {"share": 0.02, **RUNS, **heated, **slip}
+    speed = lube.required_speed(rollers, oil, **without("speed"), **given)["speed"].item()
+    level = lube.required_temperature(rollers, oil, **without("temperature"), **given)
+    factor = lube.required_roughness(rollers, oil, **POINT, **given)["roughness_factor"].item()
+    smoother = of_roughness(f"{0.2 * factor!r} um", busy.study.line_spec)
+    for surfaces, changes in (
+        (rollers, {"speed": (speed, "rpm")}),
+        (rollers, {"temperature": (level["temperature"].item(), "degC")}),
+        (smoother, {}),
+    ):
+        found = probability(surfaces, oil, **changes, **heated, **slip)
+        assert found == pytest.approx(0.02, rel=0.2)
+        assert probability(surfaces, oil, **changes, **heated) < 0.018
+
+
 def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers, oil, monkeypatch):
     """Beyond some speed heating makes the film thinner again: the answer lies below."""
     monkeypatch.setattr(required, "FACTORS", np.geomspace(1e-3, 1e3, 151))
@@ -185,16 +203,17 @@ def test_a_rare_share_under_a_shape_is_sampled_and_on_flattened_lines_refused(ro
 
 @pytest.mark.usefixtures("few_pairs")
 def test_a_rare_share_of_lines_that_the_oil_answers(rollers, oil, monkeypatch):
-    """Put in again, and with slip, which the answer depends on."""
+    """Put in again with the slip, which the answer depends on, and without."""
     monkeypatch.setattr(film_search, "AROUND", film_search.AROUND[::2])
-    gap = {"film_shape": "computed", "roughness_deformation": "computed"}
-    found = lube.required_speed(rollers, oil, **without("speed"), share=1e-4, **gap, **ONE)
+    gap = {"film_shape": "computed", "roughness_deformation": "computed"} | ONE
+    slip = {"slide_to_roll_ratio": 1.0}
+    found = lube.required_speed(rollers, oil, **without("speed"), share=1e-4, **gap, **slip)
     point = POINT | {"speed": (found["speed"].item(), "rpm")}
-    back = lube.contact_probability(rollers, oil, **point, **gap, **ONE)
+    back = lube.contact_probability(rollers, oil, **point, **gap, **slip)
     probability = back["tail_breakthrough_probability"].item()
     assert probability == pytest.approx(1e-4, rel=0.1)
-    sliding = lube.contact_probability(rollers, oil, **point, **gap, **ONE, slide_to_roll_ratio=1.0)
-    assert abs(np.log(sliding["tail_breakthrough_probability"].item() / probability)) > 0.02
+    rolling = lube.contact_probability(rollers, oil, **point, **gap)
+    assert abs(np.log(rolling["tail_breakthrough_probability"].item() / probability)) > 0.02
 
 
 SURFACE = {"contact_model": "surface", "seed": 2}
