@@ -20,7 +20,7 @@ Point = Mapping[str, xr.DataArray]
 _TAKEN_BY = {
     "bands": "only contact_probability, duty and the required_ functions take it",
     "contact_model": "only contact_probability, duty, trace, plan and the required_ functions do",
-    "load_sharing": "only contact_probability and duty take it: the oil carries the whole load",
+    "load_sharing": "the oil carries the whole load here",
     "slide_to_roll_ratio": "duty takes both surface speeds, required_film and profile no slip",
 }
 """Choices that some functions lack, and which have them."""

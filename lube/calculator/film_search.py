@@ -70,8 +70,8 @@ class FilmSearch:
     Parameters
     ----------
     assumed : Assumptions
-        Rollers, a model with a single contact model, in which the oil carries the whole load, and
-        what is not known exactly; if wanted, adds the limits over it to all that is found.
+        Rollers, a model with a single contact model, and what is not known exactly; if wanted, adds
+        the limits over it to all that is found.
     share : float
         Share of time with contact, between 0 and 1.
     realisations : int
@@ -149,6 +149,8 @@ class FilmSearch:
             strength then changes in proportion, as `required_roughness` explains.
         """
         self._rollers.lines.check_width(2.0 * half_width, "force: the contact")
+        if self._assumed.wanted:
+            self._assumed.check(points_at(np.clip(LAMBDA_RATIOS[[0, -1]], *ends)))
         look = self._at_surfaces if self._on_surface else self._at_lines
         ratios, limits = look(half_width, table_at, ends, own)
         known = np.isfinite(limits[0])

@@ -18,7 +18,14 @@ from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.stages.trace import contact_trace
 from lube.study.oil_properties import lubricant_table
-from lube.types import ContactModel, FilmShape, InletHeating, OneAmount, RoughnessDeformation
+from lube.types import (
+    ContactModel,
+    FilmShape,
+    InletHeating,
+    LoadSharing,
+    OneAmount,
+    RoughnessDeformation,
+)
 
 
 @checked
@@ -34,6 +41,7 @@ def trace(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     seed: int = SEED,
@@ -44,7 +52,7 @@ def trace(
     ----------
     rollers, oil, force, speed, temperature, film_formula, inlet_shear_heating, inlet_meniscus
         As in `film`, one value of each.
-    film_shape, roughness_deformation, slide_to_roll_ratio, seed
+    film_shape, roughness_deformation, load_sharing, slide_to_roll_ratio, seed
         As in `contact_probability`; the trace is that of realisation 0.
     contact_model : str, optional
         ``"line"``, over one revolution; or ``"surface"``, over the length of the rollers, while
@@ -71,7 +79,9 @@ def trace(
     '120 ms'
     """
     gap, model = Gap(film_shape, roughness_deformation), one_name("contact_model", contact_model)
-    choices = Choices.of(gap, model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
+    choices = Choices.of(
+        gap, model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
+    )
     slip = choices.slip
     formula = one_name("film_formula", film_formula)
     one = _one_point(rollers, oil, force, speed, temperature)

@@ -39,6 +39,7 @@ from lube.types import (
     ContactModel,
     FilmShape,
     InletHeating,
+    LoadSharing,
     OneAmount,
     RoughnessDeformation,
 )
@@ -57,6 +58,7 @@ def plan(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     turns: float | Sequence[float] = 1.0,
@@ -75,8 +77,10 @@ def plan(
     ----------
     rollers, oil, force, speed, temperature, inlet_shear_heating, inlet_meniscus
         As in `lube.film`.
-    film_formula, film_shape, roughness_deformation, slide_to_roll_ratio, realisations, seed
-        As in `lube.contact_probability`; one film formula. Realisations are those of lines.
+    film_formula, film_shape, roughness_deformation, load_sharing, slide_to_roll_ratio
+        As in `lube.contact_probability`; one film formula.
+    realisations, seed
+        As in `lube.contact_probability`. Realisations are those of lines.
     contact_model : str, optional
         ``"line"``; or ``"surface"``, as in `lube.contact_probability`, which takes a minute.
     turns : float or sequence of float, optional
@@ -116,7 +120,9 @@ def plan(
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else ["line", model]
     gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(gap, models, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
+    choices = Choices.of(
+        gap, models, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
+    )
     slip = choices.slip
     check_realisations(realisations, seed)
     formula = one_name("film_formula", film_formula)

@@ -2,7 +2,8 @@
 
 Each answer lies where the breakthrough probability equals the given share of time, and its limits
 lie where the limits of the probability do. So the 95 % interval is that of the mean over pairs of
-rollers. The oil carries the whole load: films that keep contact rare leave little to asperities.
+rollers. The oil carries the whole load unless asked otherwise: films that keep contact rare leave
+little to asperities.
 """
 
 from collections.abc import Mapping
@@ -25,7 +26,14 @@ from lube.grid.film_profiles import scaled_film
 from lube.grid.gap import Gap
 from lube.physics.pressure_laws import ROELANDS_VISCOSITY
 from lube.schema import LIMITS, values_with_limits
-from lube.types import ContactModel, FilmShape, InletHeating, OneAmount, RoughnessDeformation
+from lube.types import (
+    ContactModel,
+    FilmShape,
+    InletHeating,
+    LoadSharing,
+    OneAmount,
+    RoughnessDeformation,
+)
 
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
@@ -115,6 +123,7 @@ def required_viscosity(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
@@ -130,6 +139,8 @@ def required_viscosity(
         the density are those of the oil at that temperature.
     inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
         As in `lube.film`. Computed heating takes some seconds more.
+    load_sharing
+        As in `lube.contact_probability`.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -162,7 +173,7 @@ def required_viscosity(
 
     gap = Gap(film_shape, roughness_deformation)
     choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
     )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
     search = FilmSearch(assumed, share, realisations)
@@ -187,6 +198,7 @@ def required_speed(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
@@ -201,6 +213,8 @@ def required_speed(
         As in `lube.contact_probability`, one value of each.
     inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
         As in `lube.film`. Computed heating takes some seconds more.
+    load_sharing
+        As in `lube.contact_probability`.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -224,7 +238,7 @@ def required_speed(
 
     gap = Gap(film_shape, roughness_deformation)
     choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
     )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
     search = FilmSearch(assumed, share, realisations)
@@ -246,6 +260,7 @@ def required_temperature(
     roughness_deformation: RoughnessDeformation = "none",
     inlet_shear_heating: InletHeating = "none",
     inlet_meniscus: OneAmount | None = None,
+    load_sharing: LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
     contact_model: ContactModel = "line",
     realisations: int = REALISATIONS,
@@ -260,6 +275,8 @@ def required_temperature(
         As in `lube.contact_probability`, one value of each.
     inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
         As in `lube.film`. Computed heating takes some seconds more.
+    load_sharing
+        As in `lube.contact_probability`.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -284,7 +301,7 @@ def required_temperature(
 
     gap = Gap(film_shape, roughness_deformation)
     choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
     )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
     search = FilmSearch(assumed, share, realisations)

@@ -93,6 +93,22 @@ def test_what_is_found_for_an_inlet_that_slip_heats_has_the_share(rollers, oil, 
         assert probability(surfaces, oil, **changes, **heated) < 0.018
 
 
+def test_asperities_that_carry_load_leave_the_oil_a_thicker_film(rollers, oil):
+    """Put in again, it has the share, and a trace has its film."""
+    sharing, given = {"load_sharing": "iterated"}, without("speed") | RUNS
+    found, whole = (
+        lube.required_speed(rollers, oil, share=0.3, **given, **more) for more in (sharing, {})
+    )
+    assert found["speed"] < 0.99 * whole["speed"]
+    point = POINT | {"speed": (found["speed"].item(), "rpm")} | sharing
+    back = lube.contact_probability(rollers, oil, **point, **RUNS)
+    assert back["breakthrough_probability_mean"].item() == pytest.approx(0.3, rel=0.05)
+    assert lube.trace(rollers, oil, **point)["film_thickness"] == back["film_thickness"]
+    assert lube.plan(rollers, oil, **point, **RUNS)["film_thickness"] == back["film_thickness"]
+    with pytest.raises(LubeError, match=r"^bands: load_sharing: got iterated, need none: "):
+        lube.required_speed(rollers, oil, share=0.3, bands=True, **given, **sharing)
+
+
 def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers, oil, monkeypatch):
     """Beyond some speed heating makes the film thinner again: the answer lies below."""
     monkeypatch.setattr(required, "FACTORS", np.geomspace(1e-3, 1e3, 151))
