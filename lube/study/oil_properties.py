@@ -235,10 +235,11 @@ def _temperature_viscosity(substance, temperature):
 
 
 def _viscosity_index(record, substance):
-    """Viscosity index; NaN for thin liquids and ranges without 40 and 100 degC."""
+    """Viscosity index; NaN for thin liquids, and if 40 or 100 degC is beyond data and range."""
+    at_40_and_100, measured = np.array([40.0, 100.0]) + ZERO_CELSIUS, substance.data_temperature
     try:
-        record.check_temperatures((40.0, 100.0))
-        at_40_and_100 = np.array([40.0, 100.0]) + ZERO_CELSIUS
+        if at_40_and_100[0] < measured.min() or measured.max() < at_40_and_100[1]:
+            record.check_temperatures((40.0, 100.0))
         return viscosity_index(*substance.kinematic_viscosity(at_40_and_100) / MM2_PER_S)
     except RangeError:
         return math.nan

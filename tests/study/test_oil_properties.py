@@ -13,6 +13,7 @@ from lube.physics.coolprop_fluids import (
     secant_pressure_viscosity,
 )
 from lube.physics.pressure_viscosity import roelands_coefficient
+from lube.physics.viscosity_index import viscosity_index
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
 from lube.schema import check
 from lube.study.lubricant_record import load_record
@@ -173,6 +174,33 @@ def test_measured_coefficient_is_kept_and_converted_for_the_film_formulas(measur
     assert "Roelands' law from the reciprocal" in str(table.pressure_viscosity_definition.values)
     # The data end at 90 degC: no viscosity at 100 degC, no viscosity index.
     assert np.isnan(table.viscosity_index)
+
+
+SPARSE = """\
+name: sparse
+title: Sparse data
+viscosity:
+  source: test
+  points:
+    - {temperature: 40 degC, kinematic_viscosity: 320 mm^2/s}
+    - {temperature: 100 degC, kinematic_viscosity: 38 mm^2/s}
+density: {source: test, at_15_degC: 880 kg/m^3, thermal_coefficient: 6.5e-4 1/K}
+pressure_viscosity:
+  source: test
+  definition: slope-at-atmospheric
+  points:
+    - {temperature: 60 degC, value: 20 1/GPa}
+    - {temperature: 80 degC, value: 18 1/GPa}
+"""
+
+
+def test_the_index_needs_viscosity_alone_at_40_and_100_degrees(tmp_path):
+    path = tmp_path / "sparse.yaml"
+    path.write_text(SPARSE)
+    record = load_record(path)
+    assert record.valid_temperatures == (60.0, 80.0)
+    found = lubricant_table([record], [70.0]).viscosity_index.item()
+    assert found == pytest.approx(viscosity_index(320.0, 38.0))
 
 
 def test_golds_coefficient_and_a_measured_slope_are_taken_as_they_are(xmp):
