@@ -100,7 +100,9 @@ def _waves(spec):
     wavenumber, variance = np.concatenate(both, axis=1)
     order = np.argsort(wavenumber)
     wavenumber, variance = wavenumber[order], variance[order]
-    edges = np.geomspace(wavenumber[0], wavenumber[-1], BANDS + 1)[:-1]
+    # Near the longest wave, where w is infinite, bands are narrow.
+    even = np.arange(BANDS) / BANDS
+    edges = wavenumber[0] * (wavenumber[-1] / wavenumber[0]) ** even**2
     edges = np.unique(np.searchsorted(wavenumber, edges))
     edges = edges[np.add.reduceat(variance, edges) > 0.0]  # with a lay the longest may be 0
     of_bands = np.add.reduceat(variance, edges)

@@ -43,6 +43,26 @@ def test_pressure_rises_without_a_jump_as_the_gap_closes(spec, make_spec):
     assert np.isnan(contact_pressure(spec, MODULUS, np.array([np.nan]))[0])
 
 
+def test_pressure_is_that_of_the_theory_where_surfaces_touch_at_many_places(make_spec):
+    """Its integrals over a self-affine spectrum, on grids far finer than the package's."""
+    spec = make_spec(points=200_000, longest_wavelength=4e-4, shortest_wavelength=5e-6)
+    rms, gradient = moments(spec)
+    logarithm = np.linspace(*np.log([spec.q_min, spec.q_max]), 4001)
+    q, exponent = np.exp(logarithm), 2.0 - 2.0 * spec.lines[0].hurst_exponent
+    variance = rms**2 * (2.0 - exponent) * q ** (exponent - 2.0)  # of all waves, per ln q
+    variance /= spec.q_min ** (exponent - 2.0) - spec.q_max ** (exponent - 2.0)
+    slopes = scipy.integrate.cumulative_trapezoid(variance * q**2, logarithm, initial=0.0)
+    w = np.sqrt(2.0 / np.maximum(slopes, 1e-9 * slopes[1]))[:, None]
+    for part in (0.01, 0.003):
+        pressure = np.geomspace(part * gradient, 20.0 * gradient, 4000)
+        share = 0.4 + 1.8 * scipy.special.erf(w * pressure) ** 2
+        above = np.trapezoid(share * np.exp(-((w * pressure) ** 2)), np.log(pressure), axis=1)
+        gap = np.trapezoid(variance * q * w[:, 0] * above, logarithm) / (2.0 * np.sqrt(np.pi))
+        assert 1.5 * rms < gap < 2.4 * rms
+        expected = MODULUS * pressure[0]
+        assert contact_pressure(spec, MODULUS, gap) == pytest.approx(expected, rel=0.01)
+
+
 def test_pressure_is_that_of_a_numerical_solution(spec):
     """On surfaces of six longest waves, at the gap of which the pressure differs by some 20 %."""
     rms, gradient = moments(spec)
