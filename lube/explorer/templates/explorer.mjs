@@ -352,7 +352,7 @@ function showValues(point) {
     ].map((name) => [variables[name].long_name, shown(name, point)]);
     rows.splice(4, 0, ["contact width", `${rounded(2e6 * at("contact_half_width", point))} µm`]);
     const heating = at("inlet_shear_heating_factor", point);
-    const applied = variables.film_thickness.dims.includes("slide_to_roll_ratio") ? "" : ", not applied";
+    const applied = content.is_heated ? "" : ", not applied";
     rows.push([`film reduction by inlet shear heating${applied}`, percent(heating === null ? null : 1 - heating)]);
     if (content.sampled && !isSurface(point)) {
         rows.push(["breakthroughs counted in the realisations", withInterval(counted(point))]);
