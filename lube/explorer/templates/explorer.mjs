@@ -182,7 +182,8 @@ function showAnswers(point) {
 
 // The assumptions are nearest to pure rolling, by the study's first contact model and film formula if
 // these are not among what is open
-const rolling = Math.max(levels.slide_to_roll_ratio.values.indexOf(0), 0);
+const slips = levels.slide_to_roll_ratio.values.map(Math.abs);
+const rolling = slips.lastIndexOf(Math.min(...slips));
 const isAssumed = (point) =>
     point.slide_to_roll_ratio === rolling && ["contact_model", "film_formula"].every((name) => !point[name] || content.factors.includes(name));
 
