@@ -151,17 +151,18 @@ def rotation_speed(speed: Amount, radius: float) -> xr.DataArray:
     Raises
     ------
     StudyError
-        If the unit is that of neither.
+        If the unit is that of neither, or the speed is not above 0.
     """
     try:
-        return amount("speed", speed, "rpm", above=0.0)
-    except LubeError as error:
+        amount("speed", speed, "m/s")
+    except LubeError:
         try:
-            entrainment = amount("speed", speed, "m/s", above=0.0)
-        except LubeError:
+            return amount("speed", speed, "rpm", above=0.0)
+        except LubeError as error:
             raise StudyError(f"{error}, or 'm/s'") from None
-        rotation = entrainment * (60.0 / (2.0 * np.pi * radius))
-        return rotation.assign_coords(speed=rotation) if rotation.dims else rotation
+    entrainment = amount("speed", speed, "m/s", above=0.0)
+    rotation = entrainment * (60.0 / (2.0 * np.pi * radius))
+    return rotation.assign_coords(speed=rotation) if rotation.dims else rotation
 
 
 def single(values: xr.DataArray) -> float:

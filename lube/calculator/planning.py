@@ -119,6 +119,11 @@ def plan(
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else ["line", model]
+    if rig and model == "surface" and not rollers.lines.follows_rolling:
+        raise StudyError(
+            f"rig: got {rig!r} with ridges for which no line stands, need none: how a rig misreads "
+            "surfaces follows from lines"
+        )
     gap = Gap(film_shape, roughness_deformation)
     choices = Choices.of(
         gap, models, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing

@@ -56,7 +56,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     records, refused = _records(study)
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
-    model = study.film_model | {"with_shape": False, "answered_lines": None}
+    model = study.film_model | {"answered_lines": None}
     levels = grid.force, grid.speed, study.film_formulas[:1]
     film = film_table(oil, study.rough_rollers, *levels, slide_to_roll_ratio=study.slips, **model)
     question = film, study.line_spec, study.rough_rollers

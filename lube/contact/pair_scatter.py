@@ -226,7 +226,7 @@ class RecurringContacts:
         numpy.ndarray, shape (2,)
         """
         *alone, both = np.einsum("pl,l->p", self._counts, _excess(film))
-        return np.array(alone) / both
+        return np.divide(alone, both, out=np.zeros(2), where=both > 0.0)
 
     def drifted(self, film: float, correlation: Array) -> Array:
         """Find the fraction that is left after a drift of both surfaces.

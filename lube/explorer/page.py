@@ -31,7 +31,7 @@ _NAMES = {
 """Names of the choices on the page."""
 
 
-def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
+def explorer_page(datasets: dict[str, xr.Dataset], band: str, is_heated: bool = False) -> str:
     """Make the explorer of a study.
 
     Parameters
@@ -40,6 +40,8 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
         As for `lube.explorer.content.page_content`, as loaded.
     band : str
         `Study.band` of the study.
+    is_heated : bool, optional
+        Whether heating at the inlet thins the study's films.
 
     Returns
     -------
@@ -51,7 +53,7 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
     DataError
         As from `lube.pipeline.stamps.stamp`.
     """
-    content = page_content(datasets) | {"band": band}
+    content = page_content(datasets) | {"band": band, "is_heated": is_heated}
     controls = _controls(content["levels"], content["traces"][0]["at"])
     sources = {
         name: models.ColumnDataSource({column: [] for column in columns}, name=name)

@@ -66,5 +66,11 @@ def level_near(levels: Sequence[float], value: float, tolerance: float) -> float
 
 
 def rolling(slide_to_roll_ratio: Sequence[float]) -> float:
-    """Return pure rolling if it is among some slide-to-roll ratios, else the first."""
-    return 0.0 if 0.0 in slide_to_roll_ratio else slide_to_roll_ratio[0]
+    """Return the slide-to-roll ratio nearest to pure rolling, of two the positive one.
+
+    Examples
+    --------
+    >>> rolling([-1.0, -0.1, 0.1, 0.3])
+    0.1
+    """
+    return min(slide_to_roll_ratio, key=lambda ratio: (abs(ratio), -ratio))

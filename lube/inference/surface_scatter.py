@@ -72,7 +72,9 @@ def surface_prediction(
     tuple of numpy.ndarray
         Lower and upper limit.
     """
-    noise = np.hypot(noise, 0.25 * (limits[2] - limits[1]))
+    # Twice the standard error, on the side where no limit is cut at 0 or 1.
+    half = np.maximum(limits[0] - limits[1], limits[2] - limits[0])
+    noise = np.hypot(noise, 0.5 * half)
     return prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
 
 

@@ -83,7 +83,7 @@ class Row(StrictModel):
     lubricant: Text | None = None
     """a lubricant of the study; by default its first"""
     slide_to_roll_ratio: Annotated[float, quantity(None, least=-2.0, most=2.0)] | None = None
-    """(v1 - v2) / mean surface speed; by default 0, or the study's first if 0 is not among them"""
+    """(v1 - v2) / mean surface speed; by default the study's nearest to 0"""
     pair: Text | None = None
     """label of the pair of rollers measured; all rows without a label are of one pair"""
     origin: Literal[ORIGINS] = ORIGINS[0]

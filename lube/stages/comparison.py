@@ -238,8 +238,8 @@ def _ranges_of_lines(table):
 
     Each realisation in turn is left out of the ensemble and compared with the others as the
     records of a pair of rollers, at all of its records at once; a second pair's is the next
-    realisation. It deviates from the others as much more or less than in one revolution as records
-    do.
+    realisation. It deviates from all pairs as much more or less than in one revolution as records
+    do, while the error of the others' mean stays.
     """
     ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
     measured = np.isfinite(table["measured_share"].values)
@@ -275,11 +275,13 @@ def _range(rows):
 def _left_out(members, windows, ratio, pair):
     """Range of each figure over the realisations left out, shape (figures, 2)."""
     sides = []
+    # Variance of a record less the others' mean, over that of a revolution.
+    deviation = np.sqrt((ratio * (len(members) - 1) + 1.0) / len(members))
     for number, member in enumerate(members):
         others = np.delete(members, number, axis=0)
         mean, size = others.mean(axis=0), effective_sample_size(others, windows)
         limits = prediction_limits(mean, size, ratio, len(others))
-        shares = np.clip(member + (np.sqrt(ratio) - 1.0) * (member - mean), 0.0, 1.0)
+        shares = np.clip(member + (deviation - 1.0) * (member - mean), 0.0, 1.0)
         # A pair that never touches, or always, stays one.
         shares = np.where(member * (1.0 - member), shares, member)
         sides.append(np.broadcast_arrays(mean, *limits, shares))

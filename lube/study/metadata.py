@@ -85,7 +85,7 @@ class About(StrictModel):
     summary: _Line = (
         "Share of time with metal contact between two rough rollers that roll under load with oil "
         "between them: elastohydrodynamic film thickness, rough lines by the Method of "
-        "Dimensionality Reduction, and the break-up of a boundary layer."
+        "Dimensionality Reduction or rough surfaces, and the break-up of a boundary layer."
     )
     """what the results are, in a sentence or two"""
     creators: tuple[Creator, ...] = ()

@@ -431,5 +431,7 @@ def _check_bands(study):
         needed = f"need two points of the grid or more, {with_unit(2.0 * spec.spacing, 'm', 3)}"
         raise StudyError(f"shortest_wavelength.range: {came}, {needed}")
     models = uncertain.contact_model.choices if uncertain.contact_model else study.contact_model
+    if "line" in models:
+        spec.check_follows_rolling()
     if "surface" in models:
         study.check_surfaces(wide)

@@ -143,3 +143,12 @@ def test_lines_that_a_formula_flattens_have_no_band(rollers, oil):
             roughness_deformation="venner-1997",
             bands=KELVIN,
         )
+
+
+def test_no_line_stands_for_ground_rollers_in_a_band_either(oil):
+    ground = lube.Rollers("50 mm", "0.2 um", lay_ratio=5, lay_angle="0 deg")
+    choices = {"contact_model": {"choices": ["line", "surface"], "source": "both"}}
+    with pytest.raises(LubeError, match="bands: lay_angle: got ridges 5 times longer"):
+        lube.contact_probability(
+            *(ground, oil, "400 N", "100 rpm", "60 degC"), contact_model="surface", bands=choices
+        )

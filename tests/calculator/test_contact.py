@@ -212,6 +212,7 @@ def test_threads_leave_the_options_of_xarray_as_they_were(rollers, oil):
     [
         ({"force": "400"}, "force: got '400', need a number with its unit, such as '1 N'"),
         ({"speed": "3 kg"}, "or 'm/s'"),
+        ({"speed": "0 m/s"}, "speed: got 0 m/s, need a value above 0 m/s"),
         ({"temperature": "300 K"}, "got 26.85 degC, need 40 to 100 degC"),
         ({"film_formula": "moe"}, "unknown film formula 'moe', did you mean 'moes'?"),
         ({"film_formula": []}, "film_formula: got [], need a name, or a list of them"),

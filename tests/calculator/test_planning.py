@@ -122,3 +122,9 @@ def test_rollers_that_do_not_conduct_have_no_rig(oil):
     glass = lube.Rollers(radius="50 mm", rms_roughness="0.2 um", resistivity="insulator")
     with pytest.raises(LubeError, match=r"^rig: got 'mtm-ecr' with rollers that do not conduct"):
         lube.plan(glass, oil, **POINT, realisations=2, rig="mtm-ecr")
+
+
+def test_rollers_for_which_no_line_stands_have_no_rig(oil):
+    ground = lube.Rollers("50 mm", "0.2 um", lay_ratio=5, lay_angle="0 deg")
+    with pytest.raises(LubeError, match=r"^rig: got 'mtm-ecr' with ridges for which no line"):
+        lube.plan(ground, oil, **POINT, contact_model="surface", rig="mtm-ecr")

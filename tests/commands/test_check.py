@@ -59,6 +59,21 @@ def test_what_an_engineer_looks_at_first_is_said():
     assert "load share" in lines and "GB for each job" in lines["expected run"]
 
 
+def test_the_load_share_is_that_under_the_film_of_the_study():
+    """As docs/limits.md has it for this point."""
+    change = (
+        "name=mine",
+        "contact_model=[line, surface]",
+        "operating_grid={force: {values: [1600], units: N}, speed: {values: [100], units: rpm}, "
+        "temperature: {values: [80], units: degC}}",
+        "traces=[{force: 1600 N, speed: 100 rpm, temperature: 80 degC}]",
+    )
+    shaped = "film_formulas=[computed]", "film_shape=computed"
+    for choices, share in (((), 21), (shaped, 25)):
+        lines, _ = lines_of(PAPER, *change, *choices)
+        assert lines["load share"].endswith(f"{share} % by asperities of the surface")
+
+
 @pytest.mark.parametrize(
     ("change", "expected"),
     [

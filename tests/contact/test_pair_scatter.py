@@ -40,6 +40,10 @@ def test_the_higher_the_film_the_fewer_contacts_recur(make_spec):
     assert np.all(np.diff(found, axis=0) < 0.0) and 0.0 < found[-1][0] < found[0][0] < 0.5
 
 
+def test_above_all_summits_no_contact_recurs(make_spec):
+    assert RecurringContacts(make_spec(50_000, **LINES)).at(50.0).tolist() == [0.0, 0.0]
+
+
 def test_recurring_contacts_are_those_of_the_integral(make_spec):
     """By the sum over the grid of the bivariate normal distribution."""
     spec, film = make_spec(20_000, **LINES | {"shortest_wavelength": "8 points"}), 2.0

@@ -216,6 +216,19 @@ def test_without_importance_sampling_the_realisations_are_counted(visit, counted
     assert "no contact seen" in page.inner_text(".key")
 
 
+@pytest.mark.parametrize(
+    ("is_heated", "words"), [(False, "heating, not applied"), (True, "heating")]
+)
+def test_the_values_say_whether_heating_thins_the_film(visit, explored, tmp_path, is_heated, words):
+    """Where the oil deforms the roughness, an unheated film has the slide-to-roll ratio, too."""
+    film = explored["film"]
+    stored = film["film_thickness"].broadcast_like(film["slide_to_roll_ratio"])
+    film = film.assign(film_thickness=stored.assign_attrs(film["film_thickness"].attrs))
+    path = tmp_path / "explorer.html"
+    path.write_text(explorer_page(explored | {"film": film}, BAND, is_heated), encoding="utf-8")
+    assert f"Film reduction by inlet shear {words}\t" in visit(path).inner_text("#values")
+
+
 def test_beside_importance_sampling_the_count_is_among_the_values(visit, page_file):
     page = visit(page_file, "#temperature=80")
     table = page.inner_text("#values")

@@ -11,7 +11,12 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import strip_films, surface_contact
 from lube.grid.gap import PLAIN, Gap
 from lube.inference.at_records import study_films_at_records
-from lube.inference.surface_scatter import pair_correlation, pair_shares, surface_scatter
+from lube.inference.surface_scatter import (
+    pair_correlation,
+    pair_shares,
+    surface_prediction,
+    surface_scatter,
+)
 from lube.statistics.one_pair import drift_factor
 
 SHARES, ANSWERED = np.array([0.05, 0.4, 0.4]), Gap("flat", "computed")
@@ -63,6 +68,12 @@ def test_records_of_drawn_pairs_scatter_and_are_correlated_as_contacts_under_one
     known[:2, :2] = pair_correlation(share[:2])
     assert known[0, 1] == pytest.approx(np.sqrt(np.log(0.98) / np.log(0.7)))
     np.testing.assert_allclose(np.corrcoef(drawn[:, some].T), known, atol=0.05)
+
+
+@pytest.mark.parametrize("limits", [(0.95, 0.81, 1.0), (0.05, 0.0, 0.19)])
+def test_one_pair_is_not_better_known_than_a_mean_whose_limit_is_cut(limits):
+    lower, upper = surface_prediction(np.array(limits), 1000.0)
+    assert lower <= limits[1] and upper >= limits[2]
 
 
 def test_equal_rollers_in_pure_rolling_repeat_themselves(busy_study):

@@ -9,4 +9,5 @@ from lube.storage.netcdf import load
 study = study_of_job(snakemake)
 kinds = explored(study, snakemake.input.keys())
 datasets = {kind: load(snakemake.input[kind], kind, study) for kind in kinds}
-write_text(snakemake.output[0], explorer_page(datasets, study.band))
+is_heated = study.inlet_shear_heating != "none"
+write_text(snakemake.output[0], explorer_page(datasets, study.band, is_heated))

@@ -182,7 +182,8 @@ function showAnswers(point) {
 
 // The assumptions are nearest to pure rolling, by the study's first contact model and film formula if
 // these are not among what is open
-const rolling = Math.max(levels.slide_to_roll_ratio.values.indexOf(0), 0);
+const slips = levels.slide_to_roll_ratio.values.map(Math.abs);
+const rolling = slips.lastIndexOf(Math.min(...slips));
 const isAssumed = (point) =>
     point.slide_to_roll_ratio === rolling && ["contact_model", "film_formula"].every((name) => !point[name] || content.factors.includes(name));
 
@@ -352,7 +353,7 @@ function showValues(point) {
     ].map((name) => [variables[name].long_name, shown(name, point)]);
     rows.splice(4, 0, ["contact width", `${rounded(2e6 * at("contact_half_width", point))} µm`]);
     const heating = at("inlet_shear_heating_factor", point);
-    const applied = variables.film_thickness.dims.includes("slide_to_roll_ratio") ? "" : ", not applied";
+    const applied = content.is_heated ? "" : ", not applied";
     rows.push([`film reduction by inlet shear heating${applied}`, percent(heating === null ? null : 1 - heating)]);
     if (content.sampled && !isSurface(point)) {
         rows.push(["breakthroughs counted in the realisations", withInterval(counted(point))]);
