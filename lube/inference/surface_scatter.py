@@ -22,6 +22,7 @@ from lube.contact.pair_scatter import (
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
+from lube.statistics.confidence import standard_error
 from lube.statistics.one_pair import prediction_limits, scatter_ratio
 from lube.surfaces.rough_surface import longest_waves
 from lube.surfaces.synthetic import LineSpecLike
@@ -72,9 +73,7 @@ def surface_prediction(
     tuple of numpy.ndarray
         Lower and upper limit.
     """
-    # Twice the standard error, on the side where no limit is cut at 0 or 1.
-    half = np.maximum(limits[0] - limits[1], limits[2] - limits[0])
-    noise = np.hypot(noise, 0.5 * half)
+    noise = np.hypot(noise, standard_error(limits))
     return prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
 
 

@@ -13,6 +13,7 @@ import xarray as xr
 from lube.grid.operating_points import at_slip
 from lube.inference.record_curves import gauged_ratios
 from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
+from lube.statistics.confidence import standard_error
 from lube.statistics.curves import falling_curve
 from lube.study.study import Study
 from lube.types import Datasets
@@ -70,11 +71,11 @@ def _curve(film, areal, width):
     limits = [strip[f"breakthrough_probability{limit}"].values.ravel() for limit in LIMITS]
     # Logarithm of the probability of no contact, in a strip of this width.
     untouched = np.log1p(-np.minimum(limits, 1.0 - 1e-12)) * width / widths[nearest]
-    mean, lower, upper = -np.expm1(untouched[:, np.argsort(ratios)])
+    found = -np.expm1(untouched[:, np.argsort(ratios)])
     # Strips that count as independent trials, in a revolution.
     trials = strip["breakthrough_probability"] * (1.0 - strip["breakthrough_probability"])
     trials = trials.where(trials > 0.0) / strip["pair_deviation"] ** 2 * widths[nearest] / width
     trials = np.nan_to_num(trials.values.ravel()[np.argsort(ratios)])
-    curve = falling_curve(np.log(np.sort(ratios)), mean, trials, RESOLUTION)
-    rising = np.argsort(mean)
-    return curve, mean[rising], ((upper - lower) / 4.0)[rising]
+    curve = falling_curve(np.log(np.sort(ratios)), found[0], trials, RESOLUTION)
+    rising = np.argsort(found[0])
+    return curve, found[0][rising], standard_error(found)[rising]

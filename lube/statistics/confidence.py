@@ -6,7 +6,7 @@ there on both are treated alike, so that the intervals of simulation and experim
 Without scatter, the number of independent windows is used instead.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import scipy.special
@@ -40,6 +40,28 @@ def mean_over_first(values: Array) -> Array:
     array([2., 4.])
     """
     return sum(values) / len(values)
+
+
+def standard_error(limits: Sequence[Array]) -> Array:
+    """Find the standard error of a mean whose 95 % limits may be cut, such as at 0 or 1.
+
+    Parameters
+    ----------
+    limits : sequence of numpy.ndarray
+        The mean, its lower and its upper limit. The one farther away is not cut.
+
+    Returns
+    -------
+    numpy.ndarray
+        Of their shape.
+
+    Examples
+    --------
+    >>> standard_error([np.array([0.5, 0.9]), np.array([0.4, 0.5]), np.array([0.6, 1.0])])
+    array([0.05, 0.2 ])
+    """
+    mean, lower, upper = limits
+    return 0.5 * np.maximum(mean - lower, upper - mean)
 
 
 def mean_or_nan(values: Array) -> float:
