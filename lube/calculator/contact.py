@@ -91,8 +91,8 @@ def contact_probability(
         expected probability.
     contact_model : str or sequence of str, optional
         ``"line"``; ``"surface"``, the isotropic rough surface that the line stands for, over the
-        length of the rollers, which takes ten seconds to half a minute; or a list of both. The surface needs
-        Gaussian heights that no formula flattens.
+        length of the rollers, which takes ten seconds to half a minute; or a list of both. The
+        surface needs Gaussian heights that no formula flattens.
     realisations : int, optional
         Number of pairs of roughness lines.
     seed : int, optional
