@@ -113,7 +113,8 @@ def _add_explain(commands):
     explain.add_argument("path", help="a contact.nc or areal.nc, in the folder of its study")
     units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
     for name in (*units, "slide-to-roll-ratio"):
-        help_text = f"a level of the file{units.get(name, '')}, to within half a per cent"
+        default = "" if name in units else "; by default the first"
+        help_text = f"a level of the file{units.get(name, '')}, to within half a per cent{default}"
         explain.add_argument(f"--{name}", type=float, help=help_text)
     for name in ("lubricant", "film-formula"):
         explain.add_argument(f"--{name}", help="by name; by default the first")

@@ -91,8 +91,8 @@ def contact_probability(
         expected probability.
     contact_model : str or sequence of str, optional
         ``"line"``; ``"surface"``, the isotropic rough surface that the line stands for, over the
-        length of the rollers, which takes half a minute; or a list of both. The surface needs
-        Gaussian heights that no formula flattens.
+        length of the rollers, which takes ten seconds to half a minute; or a list of both. The
+        surface needs Gaussian heights that no formula flattens.
     realisations : int, optional
         Number of pairs of roughness lines.
     seed : int, optional
@@ -130,11 +130,10 @@ def contact_probability(
         one pair of rollers in a revolution of pure rolling, and
         ``surface_breakthrough_probability_pair_lower`` and ``_pair_upper``, between which this
         share lies in 95 % of cases, with the slip given; ``surface_passage_width``, over which the
-        rollers move while a contact is in the strip; and, if the oil does not deform the roughness,
-        ``surface_expected_breakthroughs`` and ``surface_expected_contacts``, which are less than
-        the numbers sampled at small lambda ratios, where contacts have holes. From numbers and
-        passage: ``surface_breakthrough_rate``, per hour, with ``_lower`` and ``_upper``, and
-        ``surface_breakthrough_duration``.
+        rollers move while a contact is in the strip; and ``surface_expected_breakthroughs`` and
+        ``surface_expected_contacts``, which are less than the numbers sampled at small lambda
+        ratios, where contacts have holes. From numbers and passage: ``surface_breakthrough_rate``,
+        per hour, with ``_lower`` and ``_upper``, and ``surface_breakthrough_duration``.
 
     Raises
     ------

@@ -119,7 +119,7 @@ def surface_contact(
         ``geometric_contact_probability`` and ``breakthrough_probability``, the numbers ``contacts``
         and ``breakthroughs`` in the strip, and the part of its area where the layer is broken,
         ``breakdown_ratio``, each with ``_lower`` and ``_upper``; the numbers that theory expects,
-        ``expected_contacts`` and ``expected_breakthroughs``; the way that the
+        ``expected_contacts`` and ``expected_breakthroughs``; the distance that the
         rollers move while a contact is in the strip, ``passage_width`` (m), and the scatter of a
         pair's share of breakthrough in a revolution of pure rolling, ``pair_deviation``, as
         `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film

@@ -63,7 +63,7 @@ class PassingContacts(NamedTuple):
     number : float
         Contacts in the strip.
     appearing : float
-        Contacts that appear per way of the mean motion along rolling, 1/m.
+        Contacts that appear per rolled distance, the mean motion along rolling, 1/m.
     """
 
     density: Array
@@ -229,7 +229,7 @@ def passing_contacts(
 
     The surface begins to touch on one side of a contact, and ends on the other. Contacts appear
     where a summit rises above the level in the course of the motion, or where the strip's edge cuts
-    a flank that rises. With :math:`n_0` for n without the slope u', there are per way
+    a flank that rises. With :math:`n_0` for n without the slope u', there are per rolled distance
 
     .. math::
 
@@ -246,7 +246,7 @@ def passing_contacts(
         Levels u, above zero, shape (columns,).
     changes : numpy.ndarray
         Covariances of the changes of the height over its rms value along rolling, along the
-        rollers, and per way of the mean motion along rolling, 1/m^2, shape (columns, 3, 3).
+        rollers, and per rolled distance, 1/m^2, shape (columns, 3, 3).
     length, spacing : float
         Length of the strip along the rollers, and distance of its columns, m.
     has_edges : bool

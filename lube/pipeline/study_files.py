@@ -218,7 +218,8 @@ class StudyFiles:
         for target in targets:
             asked = self._stages_of(target, figures)
             of_target = [name for name, row in STAGES.items() if row.target == target]
-            lacking = next(filter(None, map(self.study.lacks, asked)), ())
+            # Of several files, the one that needs the least more.
+            lacking = min(filter(None, map(self.study.lacks, asked)), key=len, default=())
             if lacking and not any(map(self.study.has, of_target)):  # else it makes another file
                 needed = " and ".join(CONDITIONS[name] for name in lacking)
                 raise LubeError(f"{self.path}: got the target {target}, need {needed}")
