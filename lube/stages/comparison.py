@@ -98,12 +98,13 @@ def compare(
     if surfaces is not None:
         ranges = _ranges_of_surfaces(table, surfaces, seed)
         tables["surface"] = _judged(table, experiment, _of_surfaces(table, surfaces), ranges)
+        tables = {name: tables[name] for name in contact_models}
     first = next(iter(tables.values()))
-    notes = {"missing": _missing(first, levels), "remarks": _contradictions(first)}
+    notes = {"missing": _missing(first, levels), "remarks": _contradictions(tables)}
     for lines in notes.values():
         log_lines(log, lines)
     if surfaces is not None:
-        first = over_contact_models("comparison", {name: tables[name] for name in contact_models})
+        first = over_contact_models("comparison", tables)
     texts = {name: "\n".join(lines) for name, lines in notes.items()}
     return label(first.assign_attrs(texts), "comparison")
 
@@ -320,17 +321,20 @@ def _missing(table, levels):
     ]
 
 
-def _contradictions(table):
+def _contradictions(tables):
     """One line for any two records of one operating point whose shares differ too much.
 
-    If the model is correct, one experiment in twenty has such a line by chance.
+    They differ too much for every contact model that records are compared with. If one of them is
+    correct, one experiment in twenty has such a line by chance.
     """
+    table = next(iter(tables.values()))
     names = ["lubricant", "slide_to_roll_ratio", *(f"{name}_level" for name in GROUPS)]
     columns = pd.DataFrame({name: table[name].values for name in names})
     points = columns.groupby(names).indices.values()  # records without a level are dropped
     couples = [couple for rows in points for couple in itertools.combinations(rows, 2)]
     share, record = table["measured_share"].values, table["record"].values
-    half = _half_widths(table, max(len(couples), 1))
+    many = max(len(couples), 1)
+    half = np.max([_half_widths(each, model, many) for model, each in tables.items()], axis=0)
     return [
         f"{record[one]} and {record[other]} are of one operating point, but contradict each "
         f"other: shares {share[one]:.4g} and {share[other]:.4g}"
@@ -339,9 +343,12 @@ def _contradictions(table):
     ]
 
 
-def _half_widths(table, comparisons):
+def _half_widths(table, contact_model, comparisons):
     """Half-width of each prediction interval of the first formula, for many comparisons at once."""
-    first, count = table.isel(film_formula=0), table.sizes.get("realisation", SURFACES)
-    mean = first.get("pooled_probability", first["simulated_probability"]).values
+    name, count = "simulated_probability", SURFACES
+    if contact_model == "line":
+        name, count = "pooled_probability", table.sizes["realisation"]
+    first = table.isel(film_formula=0)
+    mean = first[name].values
     sides = [abs(first[f"predicted_share{side}"].values - mean) for side in LIMITS[1:]]
     return np.maximum(*sides) * quantile(count, comparisons) / quantile(count)

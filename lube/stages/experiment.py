@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import DataError, LubeError
+from lube.grid.discretise import speed_ratios
 from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
 from lube.grid.operating_points import known_films, levels_at, operating_points
@@ -17,9 +18,9 @@ from lube.inference.study_shares import levels_named
 from lube.recordings.manifest import Manifest, read_manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 from lube.rig.record import LEVELS, TRACE_SAMPLES, Conditions, Record
-from lube.rig.simulator import simulated_revolutions
+from lube.rig.simulator import repeats, simulated_revolutions
 from lube.schema import AT_RECORDS, FILES, label, values_with_limits, with_dims
-from lube.statistics.folding import PHASES
+from lube.statistics.folding import CLEAR, PHASES, SPAN
 from lube.study.study import Study
 from lube.types import Datasets
 from lube.units import with_unit
@@ -140,6 +141,12 @@ def _row_of_entry(entry, study, remarks):
         remarks.append(
             f"{name}: its speed is stated as {conditions.speed:.6g} rpm, but it repeats itself at "
             f"{row['speed']:.6g} rpm, which is used instead"
+        )
+    slip = conditions.slide_to_roll_ratio
+    if row["repeatability"] < CLEAR and repeats(study, speed_ratios(slip)):
+        remarks.append(
+            f"{name}: rollers of one size without slip repeat themselves, but it does not, at any "
+            f"speed within {SPAN:.0%} of the stated {conditions.speed:.6g} rpm"
         )
     at = study.experiment.thresholds.index(study.experiment.threshold)
     if recording.quantity == "voltage" and row["contact_share"][at] == 1.0:

@@ -14,7 +14,7 @@ LAYER_FACTORS = 2.0 ** np.arange(-3, 4)
 """Strengths of the boundary layer in the coarse map, relative to the study's."""
 LAYER_LEVELS = (12, 3)
 """Numbers of levels of the lambda ratio and of the contact width in the coarse map."""
-THINNER_FILMS = np.geomspace(0.3, 1.0, 5)[:-1]
+THINNER_FILMS = np.geomspace(0.3, 1.0, 13)[:-1]
 """Lambda ratios of the map below the lowest of the film table, relative to it."""
 
 
@@ -38,10 +38,9 @@ def contact_map(
     """Map the probabilities in pure rolling over lambda ratio and contact width.
 
     The probabilities of a realisation depend on the operating conditions only through the film
-    thickness and the contact width, so one map serves a whole study. A few films thinner than
-    the study's are added, for records with more contact than the study predicts; there the
-    probabilities change little with the film. A coarser map covers boundary layers weaker and
-    stronger than the study's by `LAYER_FACTORS`.
+    thickness and the contact width, so one map serves a whole study. Films thinner than the
+    study's are added, for records with more contact than the study predicts. A coarser map covers
+    boundary layers weaker and stronger than the study's by `LAYER_FACTORS`.
 
     Parameters
     ----------

@@ -295,10 +295,10 @@ def test_the_map_spans_all_films_and_windows_of_the_study_and_thinner_films(mapp
             assert (np.diff(levels) > 0).all()
             assert levels[-1] == pytest.approx(values.max().item())
             assert np.isclose(levels, values.min().item()).any()
-    assert mapped.sizes["lambda_ratio"] == 4 + 6
+    assert mapped.sizes["lambda_ratio"] == 12 + 6
     assert mapped.sizes["contact_width"] == 4
     least = film["lambda_ratio"].min().item()
-    assert mapped["lambda_ratio"].values[[0, 4]] == pytest.approx([0.3 * least, least])
+    assert mapped["lambda_ratio"].values[[0, 12]] == pytest.approx([0.3 * least, least])
 
 
 def test_every_value_of_the_map_is_the_kernels(mapped, lines, film, layer):
@@ -334,7 +334,7 @@ def test_every_layer_of_the_map_is_run_as_a_layer_of_its_own(mapped, lines, film
 
 def test_one_film_and_one_window_make_a_map_of_one_width(lines, film, layer):
     mapped = contact_map(lines, film.isel({name: [0] for name in OPERATING_DIMS}), layer)
-    assert mapped.sizes["lambda_ratio"] == 4 + 1  # thinner films than the study's are added
+    assert mapped.sizes["lambda_ratio"] == 12 + 1  # thinner films than the study's are added
     assert mapped.sizes["layer_lambda_ratio"] == mapped.sizes["contact_width"] == 1
 
 

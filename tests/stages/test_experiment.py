@@ -230,6 +230,13 @@ def test_a_speed_that_the_repetition_contradicts_is_corrected(measured, tmp_path
     assert used == pytest.approx(97.0, rel=1e-4) and line in caplog.text
 
 
+def test_a_speed_that_is_stated_far_off_is_remarked_on(measured, tmp_path):
+    written(tmp_path / "fast.csv", turning(110.0, 20.0), 1e-3)
+    result = measured("fast.csv,800,100,40")
+    assert result["speed"] == 100.0
+    assert result.remarks.startswith("fast.csv (manifest.csv: line 2): rollers of one size without")
+
+
 def test_a_speed_within_its_tolerance_is_left_as_stated(measured, tmp_path):
     written(tmp_path / "nearly.csv", turning(99.6, 20.0), 1e-3)
     written(tmp_path / "slow.csv", turning(97.0, 20.0), 1e-3)
@@ -244,7 +251,10 @@ def test_a_record_that_does_not_repeat_by_the_turn_keeps_its_speed(measured, tmp
     rng = np.random.default_rng(2)
     written(tmp_path / "random.csv", np.where(rng.random(12_000) < 0.3, 5.0, 5e4), 1e-3)
     result = measured("random.csv,800,100,40", "wave.csv,800,100,40")
-    assert (result["speed"] == 100.0).all() and result.remarks == ""
+    assert (result["speed"] == 100.0).all()
+    (line,) = result.remarks.splitlines()
+    assert line.startswith("random.csv (manifest.csv: line 2): rollers of one size without slip")
+    assert line.endswith("within 5% of the stated 100 rpm")
     random = result.isel(record=0)
     assert random["revolution_period"] == pytest.approx(0.6)
     assert random["repeatability"] == pytest.approx(0.0, abs=0.05)

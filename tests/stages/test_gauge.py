@@ -18,11 +18,12 @@ from lube.contact.windows import ContactWindows
 from lube.inference.fits import fit_alpha, fit_layer_strength
 from lube.inference.record_curves import curve_at, map_curves, own_curves
 from lube.schema import LIMITS, check, label
-from lube.stages import contact_statistics, film_table
+from lube.stages import contact_map, contact_statistics, film_table, gather_map
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records, make
 from lube.study.oil_properties import lubricant_table
 
 FORMULA = {"film_formula": "paper"}
+THICKNESS = ("film_thickness", "lambda_ratio")
 
 
 def film_by_map(busy, comparison):
@@ -69,6 +70,22 @@ def test_a_share_of_the_maps_own_curve_is_gauged_back_to_its_film(busy, compared
             assert (gauged[f"gauged_lambda_ratio{limit}"].diff("record") > 0.0).all()
         assert (gauged["gauged_lambda_ratio_lower"] < ratios).all()
         assert (gauged["gauged_lambda_ratio_upper"] > ratios).all()
+
+
+def test_a_film_thinner_than_all_of_the_study_is_gauged_as_well(busy):
+    """In a study whose thinnest film is still so thick that contact changes much with it."""
+    one = busy.film.isel(film_formula=[0], speed=[0], temperature=[-1], force=[-1])
+    layer, least = busy.study.boundary_layer, one["lambda_ratio"].item()
+    width = 2.0 * one["contact_half_width"].item()
+
+    def with_ratio(ratio):
+        return one.assign({name: ratio / least * one[name] for name in THICKNESS})
+
+    master = gather_map([contact_map(busy.lines, with_ratio(2.0), layer)])
+    for ratio in (1.7, 1.3):
+        contact = contact_statistics(busy.lines, with_ratio(ratio), layer)
+        share = contact["breakthrough_probability"].mean().item()
+        assert np.exp(curve_at(master, width).film_at(share)) == pytest.approx(ratio, rel=0.02)
 
 
 def test_a_film_is_known_worse_from_short_and_noisy_records_but_not_better_from_long(
