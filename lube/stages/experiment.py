@@ -124,7 +124,22 @@ def measured_experiment(manifest: Manifest, study: Study) -> xr.Dataset:
             rows.append(_row_of_entry(entry, study, remarks))
         except LubeError as error:
             refused.append(str(error))
+    restless = [row["record"] for row in rows if _changes_by_the_turn(row, study)]
+    if restless:
+        more = f" and {len(restless) - 1} more" if len(restless) > 1 else ""
+        remarks.append(
+            f"{restless[0]}{more}: rollers of one size without slip repeat themselves by the turn, "
+            f"but here none is seen to, at any speed within {100.0 * SPAN:g} % of the one stated: "
+            "the speed may be wrong, or the roughness changes (rig.drift)"
+        )
     return _dataset(rows, study, manifest.origin, refused, remarks)
+
+
+def _changes_by_the_turn(row, study):
+    """Whether a record does not repeat itself by the turn, although its rollers should."""
+    # A stated share, and a record of one turn, have no repeatability.
+    changes = row.get("repeatability", np.nan) < CLEAR
+    return changes and repeats(study, speed_ratios(row["slide_to_roll_ratio"]))
 
 
 def _row_of_entry(entry, study, remarks):
@@ -141,12 +156,6 @@ def _row_of_entry(entry, study, remarks):
         remarks.append(
             f"{name}: its speed is stated as {conditions.speed:.6g} rpm, but it repeats itself at "
             f"{row['speed']:.6g} rpm, which is used instead"
-        )
-    slip = conditions.slide_to_roll_ratio
-    if row["repeatability"] < CLEAR and repeats(study, speed_ratios(slip)):
-        remarks.append(
-            f"{name}: rollers of one size without slip repeat themselves, but it does not, at any "
-            f"speed within {SPAN:.0%} of the stated {conditions.speed:.6g} rpm"
         )
     at = study.experiment.thresholds.index(study.experiment.threshold)
     if recording.quantity == "voltage" and row["contact_share"][at] == 1.0:
