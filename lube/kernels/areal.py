@@ -55,6 +55,57 @@ NO_ANSWER = Answered(_NOTHING, _NOTHING[0, :0], np.zeros((2, 2, 2, 0), np.float3
 """The oil does not change the surface."""
 
 
+class _Oil(NamedTuple):
+    """What the oil adds to a strip: `Answered`, and what is computed of it for this strip.
+
+    The covariances with the known point, shape (2, R', n); room for a row of nodes; and the most
+    that the oil adds in each row of nodes, NaN before it is known.
+    """
+
+    answered: Answered
+    by_known: Array
+    nodes: Array
+    highest: Array
+
+
+class _Rows(NamedTuple):
+    """Heights of a strip, filled in row by row: each row has the number of its strip if it is."""
+
+    heights: Array
+    filled: Array
+    strip: int
+
+
+class _MovedSurface(NamedTuple):
+    """A surface in a strip, moved by `rise` times the covariance with the known point.
+
+    The known point lies in row `reach` of the covariances, in row `first_row` of the surface, and
+    in column `origin` of the strip, which begins in column `first_column` of the surface.
+    """
+
+    fields: Pair
+    covariances: Pair
+    reach: int
+    first_row: int
+    first_column: int
+    origin: int
+    rise: float
+    oil: _Oil
+    rows: _Rows
+
+
+class _Search(NamedTuple):
+    """A search for contacts: the strip, as in `touching_strips`, and marks of points seen."""
+
+    film: Array
+    sharp: Array
+    fading: Array
+    seen: Array
+    mark: int
+    stack: Array
+    diagonal: int
+
+
 @kernel
 def touching_strips(
     fields: Pair,
@@ -152,16 +203,16 @@ def touching_strips(
         node, part = _node(origin, answered.shift)
         _fill_by_known(by_known, answered, node, part)
         highest[:] = np.nan
-        oil, rows_of_heights = (answered, by_known, nodes, highest), (heights, filled, k)
+        oil, own_rows = _Oil(answered, by_known, nodes, highest), _Rows(heights, filled, k)
         place = reach, places[0][k], places[1][k], origin
-        drawn = fields, covariances, *place, unmoved, oil, rows_of_heights
+        drawn = _MovedSurface(fields, covariances, *place, unmoved, oil, own_rows)
         variance = one + _along(by_known[0, -answered.first], origin, answered.shift)
         rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
-        moved = fields, covariances, *place, rise, oil, rows_of_heights
+        moved = _MovedSurface(fields, covariances, *place, rise, oil, own_rows)
         own, others_too = np.int32(2 * k + 1), np.int32(2 * k + 2)
-        search = film, sharp, fading, seen, own, stack, diagonal
+        search = _Search(film, sharp, fading, seen, own, stack, diagonal)
         chosen, points, breaks, first = _contact(moved, search, known_row, origin)
-        in_row = film, sharp, fading, seen, others_too, stack, diagonal
+        in_row = _Search(film, sharp, fading, seen, others_too, stack, diagonal)
         broken = 0
         if not breaks:
             broken = _row(moved, in_row, known_row, own)[1]
@@ -250,13 +301,13 @@ def contacts_per_row(
     strip_nodes = answered.shapes.shape[0]
     by_known = np.zeros((2, answered.covariances.shape[2], strip_nodes), np.float32)
     nodes, fading = np.empty(strip_nodes, np.float32), np.zeros(film.size)
-    oil = answered, by_known, nodes, np.empty(0, np.float32)
+    oil = _Oil(answered, by_known, nodes, np.empty(0, np.float32))
     for k in range(places[0].size):
         place = reach, places[0][k], places[1][k], origin
-        moved = fields, covariances, *place, unmoved, oil, (heights, filled, k)
-        search = film, sharp, fading, seen, np.int32(k + 1), stack, diagonal
+        moved = _MovedSurface(fields, covariances, *place, unmoved, oil, _Rows(heights, filled, k))
+        search = _Search(film, sharp, fading, seen, np.int32(k + 1), stack, diagonal)
         for row in range(first, around + 1):
-            found = _row(moved, search, row, search[4])
+            found = _row(moved, search, row, search.mark)
             if row > first:  # those of the first row may begin before it
                 for number in range(4):
                     counts[number] += found[number]
@@ -270,11 +321,10 @@ def _row(moved, search, row, followed):
     Returns the numbers of new contacts, of new contacts whose boundary layer breaks, and of the
     points of either, and the earliest row of those that break.
     """
-    film, seen, mark = search[0], search[3], search[4]
-    reach = moved[2]
     contacts, broken, points, broken_points, earliest = 0, 0, 0, 0, row
-    heights, filled, own = moved[8]
-    if filled[reach + row] != own:
+    film, seen, mark, reach = search.film, search.seen, search.mark, moved.reach
+    heights, filled, strip = moved.rows
+    if filled[reach + row] != strip:
         _fill_row(moved, row)
     for column in range(film.size):
         before = seen[reach + row, column]
@@ -292,19 +342,25 @@ def _row(moved, search, row, followed):
 @kernel
 def _fill_row(moved, row):
     """Fill in the heights of a row, counted from the known one."""
-    fields, covariances, reach, first_row, first_column, origin, rise, oil, known_rows = moved
-    rows, filled, own = known_rows
-    filled[reach + row] = own
-    heights, width = rows[reach + row], rows.shape[1]
-    drawn = fields[0][first_row + row, first_column : first_column + width]
-    middle = covariances[0].shape[1] // 2
-    known = covariances[0][reach + row, middle - origin : middle - origin + width]
+    at, rise, first, from_known = moved.reach + row, moved.rise, moved.first_column, _from(moved)
+    rows, filled, strip = moved.rows
+    filled[at] = strip
+    heights, width, nodes = rows[at], rows.shape[1], moved.oil.nodes
+    drawn = moved.fields[0][moved.first_row + row, first : first + width]
+    known = moved.covariances[0][at, from_known : from_known + width]
     for column in range(width):  # without a branch, so the compiler vectorises it
         heights[column] = drawn[column] + known[column] * rise
-    if oil[2].size > 0:
+    if nodes.size > 0:
         _fill_nodes(moved, row)
+        shift = moved.oil.answered.shift
         for column in range(width):
-            heights[column] += _along(oil[2], column, oil[0].shift)
+            heights[column] += _along(nodes, column, shift)
+
+
+@inlined
+def _from(moved):
+    """Column of the covariances that belongs to the first column of the strip."""
+    return moved.covariances[0].shape[1] // 2 - moved.origin
 
 
 @kernel
@@ -319,16 +375,16 @@ def _least_by_block(first_column, film, least):
 @kernel
 def _lie_low(moved, tops, known, least, last):
     """Whether a group of rows lies too low to touch."""
-    _, _, reach, first_row, first_column, _, rise, oil, _ = moved
+    reach, rise, answered = moved.reach, moved.rise, moved.oil.answered
     most = max(known[2, reach + last] * rise, known[3, reach + last] * rise)
-    if oil[2].size > 0:
-        before = max(last - GROUP + 1, -reach) >> oil[0].shift
-        added = _most_added(moved, before - oil[0].first)
-        while before <= last >> oil[0].shift:
+    if moved.oil.nodes.size > 0:
+        before = max(last - GROUP + 1, -reach) >> answered.shift
+        added = _most_added(moved, before - answered.first)
+        while before <= last >> answered.shift:
             before += 1
-            added = max(added, _most_added(moved, before - oil[0].first))
+            added = max(added, _most_added(moved, before - answered.first))
         most += added
-    group, first = (first_row + last) // GROUP, first_column // BLOCK
+    group, first = (moved.first_row + last) // GROUP, moved.first_column // BLOCK
     for block in range(least.size):
         if tops[1][group, min(first + block, tops[1].shape[1] - 1)] + most > least[block]:
             return False
@@ -338,27 +394,30 @@ def _lie_low(moved, tops, known, least, last):
 @kernel
 def _touches(moved, tops, known, film, least, row):
     """Whether any point of a row touches; blocks that lie too low are skipped."""
-    fields, covariances, reach, first_row, first_column, origin, rise, oil, _ = moved
-    most = max(known[0, reach + row] * rise, known[1, reach + row] * rise)
-    if oil[2].size > 0:
+    at, here, rise = moved.reach + row, moved.first_row + row, moved.rise
+    nodes, answered = moved.oil.nodes, moved.oil.answered
+    heights, covariances, shift = moved.fields[0][here], moved.covariances[0][at], answered.shift
+    most = max(known[0, at] * rise, known[1, at] * rise)
+    if nodes.size > 0:
         # Between rows of nodes, what the oil adds is linear.
-        before = (row >> oil[0].shift) - oil[0].first
+        before = (row >> shift) - answered.first
         most += max(_most_added(moved, before), _most_added(moved, before + 1))
-    first, middle, filled = first_column // BLOCK, covariances[0].shape[1] // 2, False
+    first_column, from_known = moved.first_column, _from(moved)
+    first, filled = first_column // BLOCK, False
     for block in range(least.size):
-        top = tops[0][first_row + row, min(first + block, tops[0].shape[1] - 1)]
+        top = tops[0][here, min(first + block, tops[0].shape[1] - 1)]
         if not top + most > least[block]:
             continue
         begin = max((first + block) * BLOCK - first_column, 0)
         end = min((first + block + 1) * BLOCK - first_column, film.size)
-        if oil[2].size > 0 and not filled:
+        if nodes.size > 0 and not filled:
             _fill_nodes(moved, row)
             filled = True
         touched = False
         for column in range(begin, end):
-            height = fields[0][first_row + row, first_column + column]
-            height += covariances[0][reach + row, middle - origin + column] * rise
-            height += _along(oil[2], column, oil[0].shift)
+            height = heights[first_column + column]
+            height += covariances[from_known + column] * rise
+            height += _along(nodes, column, shift)
             touched |= height > film[column]
         if touched:
             return True
@@ -368,12 +427,11 @@ def _touches(moved, tops, known, film, least, row):
 @inlined
 def _moved(surface, moved, row, column):
     """Height (0) or curvature (1) at a point of the strip, rows counted from the known one."""
-    fields, covariances, reach, first_row, first_column, origin, rise, oil, _ = moved
-    drawn = fields[surface][first_row + row, first_column + column]
-    middle = covariances[surface].shape[1] // 2
-    found = drawn + covariances[surface][reach + row, middle + column - origin] * rise
-    if oil[2].size > 0:
-        node, part = _node(column, oil[0].shift)
+    known = moved.covariances[surface][moved.reach + row, _from(moved) + column]
+    drawn = moved.fields[surface][moved.first_row + row, moved.first_column + column]
+    found = drawn + known * moved.rise
+    if moved.oil.nodes.size > 0:
+        node, part = _node(column, moved.oil.answered.shift)
         left = _at_node(surface, moved, row, node)
         found += left + part * (_at_node(surface, moved, row, node + 1) - left)
     return found
@@ -382,17 +440,17 @@ def _moved(surface, moved, row, column):
 @kernel
 def _most_added(moved, before):
     """Find the most that the oil adds in a row of nodes."""
-    answered, _, nodes, highest = moved[7]
+    highest, answered = moved.oil.highest, moved.oil.answered
     if np.isnan(highest[before]):
         _fill_nodes(moved, (answered.first + before) << answered.shift)
-        highest[before] = nodes.max()
+        highest[before] = moved.oil.nodes.max()
     return highest[before]
 
 
 @kernel
 def _fill_nodes(moved, row):
     """Fill in what the oil adds to a row at the nodes."""
-    nodes = moved[7][2]
+    nodes = moved.oil.nodes
     for node in range(nodes.size):
         nodes[node] = _at_node(0, moved, row, node)
 
@@ -400,18 +458,18 @@ def _fill_nodes(moved, row):
 @kernel
 def _at_node(surface, moved, row, node):
     """Find what the oil adds to `_moved` at a node of the strip."""
-    _, _, _, first_row, first_column, _, rise, (answered, by_known, _, _), _ = moved
+    answered, by_known = moved.oil.answered, moved.oil.by_known
     fields, shapes, shift = answered.fields, answered.shapes, answered.shift
     added = np.float32(0.0)
     if surface == 0:
-        column = (first_column >> shift) + node
-        upper, part = _node(first_row + row, shift)
+        column = (moved.first_column >> shift) + node
+        upper, part = _node(moved.first_row + row, shift)
         for m in range(shapes.shape[1]):
             here = fields[upper, column, m]
             added += shapes[node, m] * (here + part * (fields[upper + 1, column, m] - here))
     lag, part = _node(row - (answered.first << shift), shift)
     here = by_known[surface, lag, node]
-    return added + rise * (here + part * (by_known[surface, lag + 1, node] - here))
+    return added + moved.rise * (here + part * (by_known[surface, lag + 1, node] - here))
 
 
 @inlined
@@ -437,15 +495,18 @@ def _contact(moved, search, row, column):
     Returns the sum of its points' probabilities to be known, over that of a point without overlap,
     the number of its points, whether its boundary layer breaks, and its earliest row.
     """
-    film, sharp, fading, seen, mark, stack, diagonal = search
-    reach, (heights, filled, own) = moved[2], moved[8]
-    ahead = seen.shape[0] - reach - 1
-    if filled[reach + row] != own:
+    film, fading, seen, stack = search.film, search.fading, search.seen, search.stack
+    mark, diagonal, reach = search.mark, search.diagonal, moved.reach
+    # Taken out of their tuples before the loop, in which Numba would count references each time.
+    heights, filled, strip = moved.rows
+    if filled[reach + row] != strip:
         _fill_row(moved, row)
+    ahead = seen.shape[0] - reach - 1
     seen[reach + row, column] = mark
     stack[0, 0], stack[0, 1] = row, column
     waiting, points, earliest = 1, 1, row
-    highest, summit_row, summit_column = heights[reach + row, column] - film[column], row, column
+    highest = heights[reach + row, column] - film[column]
+    summit_row, summit_column = row, column
     chosen = np.exp(-fading[column] * highest)
     while waiting > 0:
         waiting -= 1
@@ -459,7 +520,7 @@ def _contact(moved, search, row, column):
             inside = -reach <= next_row <= ahead and 0 <= next_column < seen.shape[1]
             if not inside or seen[reach + next_row, next_column] == mark:
                 continue
-            if filled[reach + next_row] != own:
+            if filled[reach + next_row] != strip:
                 _fill_row(moved, next_row)
             overlap = heights[reach + next_row, next_column] - film[next_column]
             if overlap > 0.0:
@@ -469,5 +530,5 @@ def _contact(moved, search, row, column):
                 chosen += np.exp(-fading[next_column] * overlap)
                 if overlap > highest:
                     highest, summit_row, summit_column = overlap, next_row, next_column
-    breaks = _moved(1, moved, summit_row, summit_column) > sharp[summit_column]
+    breaks = _moved(1, moved, summit_row, summit_column) > search.sharp[summit_column]
     return chosen, points, breaks, earliest

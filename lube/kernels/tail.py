@@ -4,12 +4,25 @@ Heights are height steps in single precision: a line that is moved until it touc
 whole-number heights any more.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from lube.kernels.compiler import inlined, kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.runs import BLOCK
 from lube.types import Array, Pair
+
+
+class _MovedLines(NamedTuple):
+    """Two lines around a known point, moved by `rise` times their covariance with it."""
+
+    lines: Pair
+    place: int
+    correlations: Pair
+    reach: int
+    rise: float
+    film: float
 
 
 @kernel
@@ -164,7 +177,7 @@ def touching_runs(
     for m in range(places.size):
         place = places[m]
         rise = heights[m] - (lines[0][place] + lines[1][place])
-        moved = lines, place, correlations, reach, rise, film
+        moved = _MovedLines(lines, place, correlations, reach, rise, film)
         start, stop, total = _run_around(moved, 0, 0)
         points = max(stop - start, 1)  # rounding may put the known point just below the film
         weight = 1.0 / points
@@ -204,7 +217,7 @@ def _overlap(moved, point, step):
 @inlined
 def _run_around(moved, point, step):
     """Return first point, point after the last and sum of the overlaps of the run at a point."""
-    reach = moved[3]
+    reach = moved.reach
     start = stop = point
     total = 0.0
     overlap = _overlap(moved, stop, step)

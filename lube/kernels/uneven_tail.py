@@ -4,6 +4,8 @@ Windows and runs have a known touching point, as in `lube.kernels.tail`. The fil
 vary along the window, and the oil may answer the lines, as in `lube.kernels.shaped`.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from lube.kernels.compiler import kernel
@@ -12,6 +14,32 @@ from lube.kernels.motion import surface_position
 from lube.kernels.shaped import Surface, answer_at
 from lube.kernels.tail import judged
 from lube.types import Array, Pair
+
+
+class _Answered(NamedTuple):
+    """Lines that the oil answers, around a known point in the window.
+
+    `with_known` has the covariances of the lines with the gap at the known point, and `answers`
+    what the oil adds at the nodes of the window; both are NaN where they are not computed yet. The
+    window begins `offset` points from the beginning of the lines.
+    """
+
+    surfaces: tuple[Surface, Surface]
+    covariances: Array
+    with_known: Array
+    offset: int
+    known: int
+    answers: Array
+    shift: int
+
+
+class _MovedLines(NamedTuple):
+    """The same, moved by `rise` times the covariance with the known point, and the film."""
+
+    answered: _Answered
+    correlations: Pair
+    rise: float
+    film: Array
 
 
 @kernel
@@ -121,13 +149,14 @@ def touching_runs_under(
     with_known = np.empty(covariances.shape[:3])
     for m in range(places.size):
         known = touching[0][m]
-        answered = surfaces, covariances, with_known, places[m] - known, known, answers, shift
+        place = places[m] - known, known
+        answered = _Answered(surfaces, covariances, with_known, *place, answers, shift)
         with_known[..., 0] = answers[0, 0] = np.nan
         own = surfaces[0].line[places[m]] + surfaces[1].line[places[m]]
         rise = touching[1][m] - (own + _answers_at(answered, 0, known, 0, 0))
         rise /= np.float32(1.0) + _answers_at(answered, 1, known, 0, 0)
-        around = answered, correlations, rise, film
-        start, stop, total = _run_under(around, known, 0, 0)
+        moved = _MovedLines(answered, correlations, rise, film)
+        start, stop, total = _run_under(moved, known, 0, 0)
         points = max(stop - start, 1)  # rounding may put the known point just below the film
         if not layer_breaks(points, total, factor):
             continue
@@ -135,18 +164,18 @@ def touching_runs_under(
         for s in range(len(speed_ratios)):
             times = 1
             for stride in (-strides[s], strides[s]):
-                times += _times_broken(around, m, stride, speed_ratios[s], factor, start, stop)
+                times += _times_broken(moved, m, stride, speed_ratios[s], factor, start, stop)
             sums[1 + s] += 1.0 / (points * strides[s] * times)
     return sums
 
 
 @kernel
-def _times_broken(around, now, stride, ratios, factor, start, stop):
+def _times_broken(moved, now, stride, ratios, factor, start, stop):
     """Count the looks, before or after the present time step, at which a run breaks.
 
     The run is followed as long as any of its points touches, as either surface carries them on.
     """
-    film, answers = around[3], around[0][5]
+    film, answers = moved.film, moved.answered.answers
     times = first = second = step = 0
     while stop > start:
         step += stride
@@ -159,7 +188,7 @@ def _times_broken(around, now, stride, ratios, factor, start, stop):
         start, stop = film.size, 0
         broke = False
         while point < end:
-            begin, after, total = _run_under(around, point, first, second)
+            begin, after, total = _run_under(moved, point, first, second)
             if after > begin:
                 broke = broke or layer_breaks(after - begin, total, factor)
                 start, stop = min(start, begin), max(stop, after)
@@ -226,7 +255,7 @@ def _answers_at(answered, kind, point, first, second):
 
     Nodes are filled in when they are needed, for a run meets few of them.
     """
-    answers, shift = answered[5], answered[6]
+    answers, shift = answered.answers, answered.shift
     node = point >> shift
     for each in (node, node + 1):
         if np.isnan(answers[0, 0, each]):
@@ -236,11 +265,11 @@ def _answers_at(answered, kind, point, first, second):
 
 
 @kernel
-def _overlap_under(around, point, first, second):
+def _overlap_under(moved, point, first, second):
     """Overlap at a point of the window before the lines moved; negative where it is unknown."""
-    answered, correlations, rise, film = around
-    surfaces, offset, known_point = answered[0], answered[3], answered[4]
-    centre = correlations[0].size // 2 - known_point
+    answered, correlations, rise, film = moved
+    surfaces, offset = answered.surfaces, answered.offset
+    centre = correlations[0].size // 2 - answered.known
     ahead, behind = point - max(first, second) + centre, point - min(first, second) + centre
     if point < 0 or point >= film.size or ahead < 0 or behind >= correlations[0].size:
         return np.float32(-1.0)
@@ -253,21 +282,21 @@ def _overlap_under(around, point, first, second):
 
 
 @kernel
-def _run_under(around, point, first, second):
+def _run_under(moved, point, first, second):
     """First point, point after the last and sum of the overlaps of the run at a point."""
     start = stop = point
     total = 0.0
-    overlap = _overlap_under(around, stop, first, second)
+    overlap = _overlap_under(moved, stop, first, second)
     if overlap > 0.0:
         while overlap > 0.0:
             total += overlap
             stop += 1
-            overlap = _overlap_under(around, stop, first, second)
-        overlap = _overlap_under(around, start - 1, first, second)
+            overlap = _overlap_under(moved, stop, first, second)
+        overlap = _overlap_under(moved, start - 1, first, second)
         while overlap > 0.0:
             total += overlap
             start -= 1
-            overlap = _overlap_under(around, start - 1, first, second)
+            overlap = _overlap_under(moved, start - 1, first, second)
     return start, stop, total
 
 
