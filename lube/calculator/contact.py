@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import check_realisations, checked, conditions
 from lube.calculator.bands import Assumptions
@@ -24,15 +25,6 @@ from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
-from lube.types import (
-    Amount,
-    ContactModel,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-)
 
 _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
@@ -41,18 +33,18 @@ _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 def contact_probability(
     rollers: Rollers,
     oil: Oil,
-    force: Amount,
-    speed: Amount,
-    temperature: Amount,
+    force: types.Amount,
+    speed: types.Amount,
+    temperature: types.Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
-    film_shape: FilmShape = "flat",
-    roughness_deformation: RoughnessDeformation = "none",
-    inlet_shear_heating: InletHeating = "none",
-    inlet_meniscus: OneAmount | None = None,
-    load_sharing: LoadSharing = "none",
+    film_shape: types.FilmShape = "flat",
+    roughness_deformation: types.RoughnessDeformation = "none",
+    inlet_shear_heating: types.InletHeating = "none",
+    inlet_meniscus: types.OneAmount | None = None,
+    load_sharing: types.LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
-    contact_model: ContactModel | Sequence[ContactModel] = "line",
+    contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,

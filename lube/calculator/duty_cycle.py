@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.bands import Assumptions
@@ -25,15 +26,6 @@ from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
-from lube.types import (
-    ContactModel,
-    File,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-)
 
 _COLUMNS = {
     "force": "N",
@@ -55,17 +47,17 @@ _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed
 
 @checked
 def duty(
-    points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | File,
+    points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | types.File,
     rollers: Rollers,
     oil: Oil,
     *,
     film_formula: str = FORMULA,
-    film_shape: FilmShape = "flat",
-    roughness_deformation: RoughnessDeformation = "none",
-    inlet_shear_heating: InletHeating = "none",
-    inlet_meniscus: OneAmount | None = None,
-    load_sharing: LoadSharing = "none",
-    contact_model: ContactModel | Sequence[ContactModel] = "line",
+    film_shape: types.FilmShape = "flat",
+    roughness_deformation: types.RoughnessDeformation = "none",
+    inlet_shear_heating: types.InletHeating = "none",
+    inlet_meniscus: types.OneAmount | None = None,
+    load_sharing: types.LoadSharing = "none",
+    contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,
