@@ -223,7 +223,8 @@ def _columns(points):
         if missing.any():
             row = missing.tolist().index(True) + 1
             raise DataError(f"points: {header}: missing in row {row}, need it in every row")
-        if _is_label(header, values):
+        are_texts = all(isinstance(value, str) and not _NUMBER.match(value) for value in values)
+        if are_texts and header not in _COLUMNS:
             labels[header] = "point", np.array(values, object)
             continue
         name, numbers = _column(header, values)
@@ -238,12 +239,6 @@ def _columns(points):
         came = " and ".join(sorted(given)) or "no speed"
         raise DataError(f"points: got {came}, need one kind of speed: {', '.join(_SPEEDS)}")
     return columns, labels
-
-
-def _is_label(header, values):
-    """Whether a column holds texts, not numbers, under a name that is not one of `_COLUMNS`."""
-    words = all(isinstance(value, str) and not _NUMBER.match(value) for value in values)
-    return words and header not in _COLUMNS
 
 
 def _column(header, values):

@@ -290,9 +290,8 @@ def passing_contacts(
         more = weight * spread * decay * np.maximum(order, 0.0) * rising
         appearing += spacing * np.sum(more)
         if has_edges:
-            first, last = (
-                0.5 * weight * decay * (np.sqrt(c) + sign * p / spread) for sign in (-1.0, 1.0)
-            )
+            scale, own = 0.5 * weight * decay, np.sqrt(c)
+            first, last = scale * (own - p / spread), scale * (own + p / spread)
             appearing += first[0] + last[-1]
     number = spacing * np.sum(density)
     if has_edges:

@@ -121,25 +121,24 @@ class Predictor:
         """
         points = stacked_points(self.deviating).to_dataframe().assign(deviation=deviation)
         known = points.set_index(list(POINT_DIMS))["deviation"]
-        absolute, relative, run_counts, left_out_counts = [], [], [], []
+        rows = []
         for model, surrogate in self.surrogates.items():
             own = _of_model(runs, model)
             left_out = np.isfinite(surrogate.missed)
             at = own[list(POINT_DIMS)].isel(run=left_out).to_dataframe()[list(POINT_DIMS)]
             missed = surrogate.missed[left_out]
             scaled = missed / known.loc[list(at.itertuples(index=False, name=None))].to_numpy()
-            absolute.append(np.sqrt(np.mean(missed**2)))
-            relative.append(np.sqrt(np.mean(scaled**2)))
+            errors = (np.sqrt(np.mean(each**2)) for each in (missed, scaled))
             fitted = np.isfinite(own["breakthrough_probability"].values).all(axis=1)
-            run_counts.append(fitted.sum())
-            left_out_counts.append(left_out.sum())
+            rows.append((*errors, fitted.sum(), left_out.sum()))
+        absolute, relative, run_counts, left_out_counts = zip(*rows, strict=True)
         return {
             "surrogate_model": [", ".join(model) for model in self.surrogates],
-            "surrogate_error": six_digits(np.array(absolute)),
-            "relative_surrogate_error": six_digits(np.array(relative)),
-            "run_count": run_counts,
-            "left_out_count": left_out_counts,
-            "film_surrogate_error": six_digits(np.array(self.film_error)).item(),
+            "surrogate_error": six_digits(absolute),
+            "relative_surrogate_error": six_digits(relative),
+            "run_count": list(run_counts),
+            "left_out_count": list(left_out_counts),
+            "film_surrogate_error": six_digits(self.film_error).item(),
         }
 
     def log_probability(
