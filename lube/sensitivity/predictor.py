@@ -1,5 +1,6 @@
 """Probabilities of many samples at all operating points, by surrogates of films and contact."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import chain
 
@@ -12,8 +13,8 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_chosen, is_sum, models
 from lube.sensitivity.samples import deviations, over_run, quantiles
-from lube.sensitivity.shape import EffectiveRatio
-from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
+from lube.sensitivity.shape import effective_ratio
+from lube.sensitivity.surrogate import Surrogate, groups, held_out, interpolant
 from lube.threads import on_threads
 from lube.types import Array, Pair
 
@@ -45,7 +46,7 @@ class Predictor:
         The study.
     surrogates : dict
         Surrogate of each `lube.sensitivity.runs.Model`.
-    film : Interpolant or None
+    film : callable or None
         Logarithm of the computed film over that of Moes' formula, over the logarithms of M, L and
         the viscosity; None if the study does not choose it.
     film_error : float
@@ -56,9 +57,9 @@ class Predictor:
 
     deviating: Deviating
     surrogates: dict[Model, Surrogate]
-    film: Interpolant | None
+    film: Callable | None
     film_error: float
-    effective: dict[Model, EffectiveRatio]
+    effective: dict[Model, Callable]
 
     @classmethod
     def of(
@@ -82,7 +83,7 @@ class Predictor:
         """
         surrogates = {}
         effective = {
-            model: EffectiveRatio.of(deviating, runs, model.gap, model.contact_model, responses)
+            model: effective_ratio(deviating, runs, model.gap, model.contact_model, responses)
             for model in models(deviating)
             if not model.gap.is_uniform
         }
@@ -246,6 +247,6 @@ def _film(deviating, runs):
     ratio = np.log(computed["film_thickness"] / moes).values[:, None]
     variables = np.log([computed[name].values for name in FILM_GROUPS])
     last = slice(-held_out(len(ratio)), None)
-    trial = Interpolant.of(variables[:, : last.start], ratio[: last.start])
+    trial = interpolant(variables[:, : last.start], ratio[: last.start])
     missed = trial(variables[:, last]) - ratio[last]
-    return Interpolant.of(variables, ratio), float(np.sqrt(np.mean(missed**2)))
+    return interpolant(variables, ratio), float(np.sqrt(np.mean(missed**2)))
