@@ -213,8 +213,8 @@ def surface_curves(surfaces: xr.Dataset, comparison: xr.Dataset, has_shape: bool
     columns = (surfaces[f"curve_{name}"].values.T for name in ("probability", "sample_size"))
     of_records = [contact_curve(films, *of_record) for of_record in zip(*columns, strict=True)]
     few, layers = np.log(surfaces["layer_lambda_ratio"].values), surfaces["layer_curve_probability"]
-    size = np.full(few.size, np.nan)
-    of_layers = [[contact_curve(few, one, size) for one in layer.T] for layer in layers.values]
+    unknown = np.full(few.size, np.nan)
+    of_layers = [[contact_curve(few, one, unknown) for one in layer.T] for layer in layers.values]
     offsets, strengths = curve_offsets(comparison, has_shape), surfaces["layer_strength"].values
     return RecordCurves(of_records, offsets, strengths, of_layers, "surface")
 
