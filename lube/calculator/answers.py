@@ -118,8 +118,7 @@ class Answer(xr.Dataset):
         whole = [name for name in self if name.startswith("whole_")]
         rows = self.drop_vars(whole).drop_dims("realisation", errors="ignore")
         frame = (rows if rows.sizes else rows.expand_dims("point")).to_dataframe()
-        frame = frame.reset_index(drop=not rows.sizes)
-        return frame.rename(columns=self._header)
+        return frame.reset_index(drop=not rows.sizes).rename(columns=self._header)
 
     def _header(self, name):
         units = self[name].attrs.get("units", "")

@@ -6,19 +6,11 @@ from typing import TypedDict, get_args
 
 import numpy as np
 
+from lube import types
 from lube.calculator.arguments import amount, bare_number, single
 from lube.errors import StudyError, right_one, shown
 from lube.grid.gap import PLAIN, Gap
 from lube.study.study import Study
-from lube.types import (
-    ContactModel,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-    Values,
-)
 
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
@@ -28,10 +20,10 @@ class Model(TypedDict):
     """Arguments that choose the model of an answer."""
 
     film_formula: str
-    film_shape: FilmShape
-    roughness_deformation: RoughnessDeformation
-    contact_model: ContactModel
-    inlet_shear_heating: InletHeating
+    film_shape: types.FilmShape
+    roughness_deformation: types.RoughnessDeformation
+    contact_model: types.ContactModel
+    inlet_shear_heating: types.InletHeating
 
 
 COMPLETE: Model = {
@@ -71,21 +63,21 @@ class Choices:
     """
 
     gap: Gap = PLAIN
-    models: tuple[ContactModel, ...] = ("line",)
-    load_sharing: LoadSharing = "none"
-    inlet_shear_heating: InletHeating = "none"
+    models: tuple[types.ContactModel, ...] = ("line",)
+    load_sharing: types.LoadSharing = "none"
+    inlet_shear_heating: types.InletHeating = "none"
     inlet_meniscus: float | None = None
-    slip: Values = 0.0
+    slip: types.Values = 0.0
 
     @classmethod
     def of(
         cls,
         gap: Gap = PLAIN,
-        contact_model: ContactModel | Sequence[ContactModel] = "line",
-        inlet_shear_heating: InletHeating = "none",
-        inlet_meniscus: OneAmount | None = None,
+        contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
+        inlet_shear_heating: types.InletHeating = "none",
+        inlet_meniscus: types.OneAmount | None = None,
         slide_to_roll_ratio: float = 0.0,
-        load_sharing: LoadSharing = "none",
+        load_sharing: types.LoadSharing = "none",
     ) -> "Choices":
         """Choose by the values of a study's keys.
 
@@ -100,7 +92,7 @@ class Choices:
             _check_choice(name, value, get_args(Study.model_fields[name].annotation))
         models = tuple(np.ravel(contact_model).tolist())
         for model in models or [contact_model]:
-            _check_choice("contact_model", model, get_args(ContactModel))
+            _check_choice("contact_model", model, get_args(types.ContactModel))
         if inlet_meniscus is not None:
             inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
         return cls(gap, models, **film, inlet_meniscus=inlet_meniscus, slip=slip)
@@ -108,8 +100,8 @@ class Choices:
     @classmethod
     def of_smooth_rollers(
         cls,
-        inlet_shear_heating: InletHeating,
-        inlet_meniscus: OneAmount | None,
+        inlet_shear_heating: types.InletHeating,
+        inlet_meniscus: types.OneAmount | None,
         slide_to_roll_ratio: float,
     ) -> "Choices":
         """As `of`, of a film without contact, which no lines or surfaces can refuse."""

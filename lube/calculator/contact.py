@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import check_realisations, checked, conditions
 from lube.calculator.bands import Assumptions
@@ -13,7 +14,7 @@ from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
 from lube.calculator.film import conditions_of, film_in_si, formula_names, of_film, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
-from lube.contact.ensemble import with_limits, with_pair_limits
+from lube.contact.ensemble import PROBABILITIES, with_limits, with_pair_limits
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
@@ -24,35 +25,24 @@ from lube.schema import LIMITS
 from lube.stages.tail import pair_limits, pair_probabilities, surface_rates
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
-from lube.types import (
-    Amount,
-    ContactModel,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-)
-
-_PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
 
 @checked
 def contact_probability(
     rollers: Rollers,
     oil: Oil,
-    force: Amount,
-    speed: Amount,
-    temperature: Amount,
+    force: types.Amount,
+    speed: types.Amount,
+    temperature: types.Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
-    film_shape: FilmShape = "flat",
-    roughness_deformation: RoughnessDeformation = "none",
-    inlet_shear_heating: InletHeating = "none",
-    inlet_meniscus: OneAmount | None = None,
-    load_sharing: LoadSharing = "none",
+    film_shape: types.FilmShape = "flat",
+    roughness_deformation: types.RoughnessDeformation = "none",
+    inlet_shear_heating: types.InletHeating = "none",
+    inlet_meniscus: types.OneAmount | None = None,
+    load_sharing: types.LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
-    contact_model: ContactModel | Sequence[ContactModel] = "line",
+    contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,
@@ -233,7 +223,7 @@ def ensemble(pair: RoughPair, table: xr.Dataset, realisations: int, slip: float)
     counts = on_threads(of_realisation, range(realisations), name="contact of lines")
     shares = np.reshape(np.moveaxis(counts, -1, 0), (2, -1, *thickness.shape))
     dims = "realisation", *thickness.dims
-    contact = {name: (dims, each) for name, each in zip(_PROBABILITIES, shares, strict=True)}
+    contact = {n: (dims, each) for n, each in zip(PROBABILITIES[::-1], shares, strict=True)}
     levels = {"realisation": np.arange(realisations), **thickness.coords}
     independent = spec.independent_windows(width, min(speed_ratios(slip)))
     found = with_limits(xr.Dataset(contact, levels, {"seed": pair.seed}), independent)

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.bands import Assumptions
@@ -25,15 +26,6 @@ from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
-from lube.types import (
-    ContactModel,
-    File,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-)
 
 _COLUMNS = {
     "force": "N",
@@ -55,17 +47,17 @@ _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed
 
 @checked
 def duty(
-    points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | File,
+    points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | types.File,
     rollers: Rollers,
     oil: Oil,
     *,
     film_formula: str = FORMULA,
-    film_shape: FilmShape = "flat",
-    roughness_deformation: RoughnessDeformation = "none",
-    inlet_shear_heating: InletHeating = "none",
-    inlet_meniscus: OneAmount | None = None,
-    load_sharing: LoadSharing = "none",
-    contact_model: ContactModel | Sequence[ContactModel] = "line",
+    film_shape: types.FilmShape = "flat",
+    roughness_deformation: types.RoughnessDeformation = "none",
+    inlet_shear_heating: types.InletHeating = "none",
+    inlet_meniscus: types.OneAmount | None = None,
+    load_sharing: types.LoadSharing = "none",
+    contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,
@@ -231,7 +223,8 @@ def _columns(points):
         if missing.any():
             row = missing.tolist().index(True) + 1
             raise DataError(f"points: {header}: missing in row {row}, need it in every row")
-        if _is_label(header, values):
+        are_texts = all(isinstance(value, str) and not _NUMBER.match(value) for value in values)
+        if are_texts and header not in _COLUMNS:
             labels[header] = "point", np.array(values, object)
             continue
         name, numbers = _column(header, values)
@@ -246,12 +239,6 @@ def _columns(points):
         came = " and ".join(sorted(given)) or "no speed"
         raise DataError(f"points: got {came}, need one kind of speed: {', '.join(_SPEEDS)}")
     return columns, labels
-
-
-def _is_label(header, values):
-    """Whether a column holds texts, not numbers, under a name that is not one of `_COLUMNS`."""
-    words = all(isinstance(value, str) and not _NUMBER.match(value) for value in values)
-    return words and header not in _COLUMNS
 
 
 def _column(header, values):

@@ -319,9 +319,8 @@ def _crossing(ratios, probabilities, share):
     Where contact is frequent, touching points merge to long segments whose boundary layer holds:
     the probability rises with the film up to a maximum, and falls beyond it.
     """
-    unknown = np.full(ratios.size, np.nan)
     # The logarithm of a rare probability is nearly linear in the square of the ratio.
-    curve = peaked_curve(ratios**2, probabilities, unknown, _LEAST)
+    curve = peaked_curve(ratios**2, probabilities, np.full(ratios.size, np.nan), _LEAST)
     film = curve.film_at(share)  # NaN where all probabilities are 0
     return np.sqrt(film) if film > 0.0 else 0.0
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from lube import types
 from lube.calculator.answers import Answer, described
 from lube.calculator.arguments import checked, conditions, one_name, single
 from lube.calculator.choices import FORMULA, SEED, Choices
@@ -18,32 +19,24 @@ from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.stages.trace import contact_trace
 from lube.study.oil_properties import lubricant_table
-from lube.types import (
-    ContactModel,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-)
 
 
 @checked
 def trace(
     rollers: Rollers,
     oil: Oil,
-    force: OneAmount,
-    speed: OneAmount,
-    temperature: OneAmount,
+    force: types.OneAmount,
+    speed: types.OneAmount,
+    temperature: types.OneAmount,
     *,
     film_formula: str = FORMULA,
-    film_shape: FilmShape = "flat",
-    roughness_deformation: RoughnessDeformation = "none",
-    inlet_shear_heating: InletHeating = "none",
-    inlet_meniscus: OneAmount | None = None,
-    load_sharing: LoadSharing = "none",
+    film_shape: types.FilmShape = "flat",
+    roughness_deformation: types.RoughnessDeformation = "none",
+    inlet_shear_heating: types.InletHeating = "none",
+    inlet_meniscus: types.OneAmount | None = None,
+    load_sharing: types.LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
-    contact_model: ContactModel = "line",
+    contact_model: types.ContactModel = "line",
     seed: int = SEED,
 ) -> Answer:
     """Contact length and electrical resistance over one revolution, or a stretch of surfaces.
@@ -110,7 +103,11 @@ def _surface_trace(rollers, film, pair, slip):
 
 @checked
 def profile(
-    rollers: Rollers, oil: Oil, force: OneAmount, speed: OneAmount, temperature: OneAmount
+    rollers: Rollers,
+    oil: Oil,
+    force: types.OneAmount,
+    speed: types.OneAmount,
+    temperature: types.OneAmount,
 ) -> Answer:
     """Pressure and film across the contact, from Reynolds' equation.
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
@@ -19,51 +20,33 @@ from lube.errors import StudyError, right_one
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.grid.operating_points import surface_speeds
-from lube.inference.planning import (
-    QUANTITIES,
-    film_by_coefficient,
-    half_widths,
-    line_ratios,
-    on_surfaces,
-    reading_of_surfaces,
-    relative_error,
-    slopes,
-)
+from lube.inference import planning
 from lube.physics.electrical import film_capacitance
 from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import Revolution
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.surfaces.synthetic import draw_realisation
-from lube.types import (
-    Amount,
-    ContactModel,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    OneAmount,
-    RoughnessDeformation,
-)
 
 
 @checked
 def plan(
     rollers: Rollers,
     oil: Oil,
-    force: Amount,
-    speed: Amount,
-    temperature: Amount,
+    force: types.Amount,
+    speed: types.Amount,
+    temperature: types.Amount,
     *,
     film_formula: str = FORMULA,
-    film_shape: FilmShape = "flat",
-    roughness_deformation: RoughnessDeformation = "none",
-    inlet_shear_heating: InletHeating = "none",
-    inlet_meniscus: OneAmount | None = None,
-    load_sharing: LoadSharing = "none",
+    film_shape: types.FilmShape = "flat",
+    roughness_deformation: types.RoughnessDeformation = "none",
+    inlet_shear_heating: types.InletHeating = "none",
+    inlet_meniscus: types.OneAmount | None = None,
+    load_sharing: types.LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
-    contact_model: ContactModel = "line",
+    contact_model: types.ContactModel = "line",
     turns: float | Sequence[float] = 1.0,
     rig: KnownRig | None = None,
-    threshold: Amount = "100 ohm",
+    threshold: types.Amount = "100 ohm",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -136,26 +119,27 @@ def plan(
     records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, gap)
     if model == "surface":
         contact = surface_contact(pair, table)
-        found, size, ratio = on_surfaces(pair, table, contact, slip, records)
-        reading, realisations = reading_of_surfaces(reading, found.probability), SURFACES
+        found, size, ratio = planning.on_surfaces(pair, table, contact, slip, records)
+        reading, realisations = planning.reading_of_surfaces(reading, found.probability), SURFACES
     else:
         contact = ensemble(pair, table, realisations, slip)
         slower, width = min(speed_ratios(slip)), 2.0 * table["contact_half_width"]
         windows = rollers.lines.independent_windows(width, slower)
         size = sample_size(contact["breakthrough_probability"], windows).ravel()
-        found, ratio = slopes(pair, table), line_ratios(pair, table, slip, records)
-    error = relative_error(found.probability, size, ratio[:, None], reading)
+        found = planning.slopes(pair, table)
+        ratio = planning.line_ratios(pair, table, slip, records)
+    error = planning.relative_error(found.probability, size, ratio[:, None], reading)
     oils, dims = oil.at(table["temperature"]), table["film_thickness"].dims
     given = oils, rollers.pair, table["force"], table["speed"], formula
     # Heating does not depend on the coefficient.
-    slope = film_by_coefficient(*given, inlet_meniscus=choices.inlet_meniscus)
+    slope = planning.film_by_coefficient(*given, inlet_meniscus=choices.inlet_meniscus)
     by_coefficient = slope.transpose(*dims).values.ravel()
-    widths = half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
+    widths = planning.half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
     shape, read = table["film_thickness"].shape, (*thresholds.dims, *dims)
-    answer = of_film(table).assign_coords(quantity=list(QUANTITIES))
+    answer = of_film(table).assign_coords(quantity=list(planning.QUANTITIES))
     answer = answer.assign_coords(turns.coords).assign_coords(thresholds.coords)
     answer["breakthrough_probability"] = dims, found.probability.reshape(shape)
-    sizes = len(QUANTITIES), *turns.shape, *thresholds.shape, *shape
+    sizes = len(planning.QUANTITIES), *turns.shape, *thresholds.shape, *shape
     answer["half_width"] = ("quantity", *turns.dims, *read), widths.reshape(sizes)
     answer["reading_error"] = read, reading.reshape((*thresholds.shape, *shape))
     return with_remarks(answer, table, rollers)

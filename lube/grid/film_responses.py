@@ -211,8 +211,7 @@ def _spread(power, *axes):
     shape, ends = [nodes.size for _, nodes in axes], []
     for places, nodes in axes:
         right = np.clip(np.searchsorted(nodes, places), 1, nodes.size - 1)
-        part = (places - nodes[right - 1]) / (nodes[right] - nodes[right - 1])
-        part = np.clip(part, 0.0, 1.0)
+        part = np.clip((places - nodes[right - 1]) / (nodes[right] - nodes[right - 1]), 0.0, 1.0)
         ends.append([(right - 1, 1.0 - part), (right, part)])
     found = np.zeros(np.prod(shape))
     for corner in itertools.product(*ends):

@@ -281,13 +281,12 @@ def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Datas
     """Hertz contact of smooth, dry rollers; arguments as in `film_at`."""
     pair = rollers.length, rollers.reduced_radius, rollers.reduced_modulus
     half_width = hertz.contact_half_width(force, *pair)
-    return xr.Dataset(
-        {
-            "reduced_radius": rollers.reduced_radius,
-            "reduced_modulus": rollers.reduced_modulus,
-            "composite_rms_roughness": rollers.composite_rms_roughness,
-            "contact_half_width": half_width,
-            "hertz_pressure": hertz.maximum_pressure(force, half_width, rollers.length),
-            "entrainment_speed": 2.0 * np.pi * rollers.first.radius * speed / 60.0,
-        }
-    )
+    found = {
+        "reduced_radius": rollers.reduced_radius,
+        "reduced_modulus": rollers.reduced_modulus,
+        "composite_rms_roughness": rollers.composite_rms_roughness,
+        "contact_half_width": half_width,
+        "hertz_pressure": hertz.maximum_pressure(force, half_width, rollers.length),
+        "entrainment_speed": 2.0 * np.pi * rollers.first.radius * speed / 60.0,
+    }
+    return xr.Dataset(found)

@@ -1,5 +1,7 @@
 """Published indicators of lubrication over any operating conditions."""
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -38,21 +40,18 @@ def indicators(film: xr.Dataset, resistance: xr.DataArray, rollers) -> xr.Datase
     gears = xr.apply_ufunc(micropitting_film, *numbers) * radius / rollers.mean_ra_roughness
     shares = [_load_share(curve, film, rollers) for curve in LOAD_SHARES.values()]
     scale = 2.0 * rollers.reduced_modulus * radius
-    found = [
-        scale * xr.apply_ufunc(lambda *each, name=name: rolling_resistance(name, *each), *numbers)
-        for name in RESISTANCE_FORMULAS
-    ]
+    by_name = (partial(rolling_resistance, name) for name in RESISTANCE_FORMULAS)
+    found = [scale * xr.apply_ufunc(one, *numbers) for one in by_name]
     curves = xr.DataArray(list(LOAD_SHARES), dims="load_share_curve", name="load_share_curve")
     names = [COMPUTED, *RESISTANCE_FORMULAS]
     formulas = xr.DataArray(names, dims="resistance_formula", name="resistance_formula")
-    return xr.Dataset(
-        {
-            "micropitting_film_ratio": gears,
-            "asperity_load_share": xr.concat(shares, curves, join="exact"),
-            "rolling_resistance": rollers.length
-            * xr.concat([resistance, *found], formulas, join="exact"),
-        }
-    )
+    resistances = xr.concat([resistance, *found], formulas, join="exact")
+    table = {
+        "micropitting_film_ratio": gears,
+        "asperity_load_share": xr.concat(shares, curves, join="exact"),
+        "rolling_resistance": rollers.length * resistances,
+    }
+    return xr.Dataset(table)
 
 
 def _load_share(curve, film, rollers):

@@ -92,10 +92,8 @@ def rows_at(film: xr.Dataset, points: Sequence[Mapping[str, Any]]) -> xr.Dataset
     xarray.Dataset
         Over operating_point.
     """
-    levels = {
-        name: xr.DataArray([point[name] for point in points], dims="operating_point")
-        for name in CONTACT_DIMS
-    }
+    columns = {name: [point[name] for point in points] for name in CONTACT_DIMS}
+    levels = {name: xr.DataArray(each, dims="operating_point") for name, each in columns.items()}
     rows = at_slip(film, points[0]["slide_to_roll_ratio"])
     rows = rows.sel({name: levels[name] for name in OPERATING_DIMS})
     return rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
@@ -189,8 +187,7 @@ def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> xr.Datase
     >>> operating_points(table, 0.0)["force"].values.tolist()
     [200.0, 400.0]
     """
-    rows = at_slip(table, slide_to_roll_ratio)
-    rows = rows.stack(operating_point=POINT_DIMS, create_index=False)
+    rows = at_slip(table, slide_to_roll_ratio).stack(operating_point=POINT_DIMS, create_index=False)
     slips = np.full(rows.sizes["operating_point"], slide_to_roll_ratio)
     rows = rows.assign_coords(slide_to_roll_ratio=("operating_point", slips))
     return rows.transpose("operating_point", ...)

@@ -111,16 +111,13 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     more, most = (f"at {n} more than all of it, " if n else "" for n in (overloaded, overrubs))
     bends = int((deformed(film) | deformed(film, film)).sum())  # lines or surfaces
     found = {
-        f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel 210 GPa": (
-            min(moduli) < 1e9 or max(moduli) > 1.2e12
-        ),
+        f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel "
+        "210 GPa": min(moduli) < 1e9 or max(moduli) > 1.2e12,
         f"Hertz pressure: up to {with_unit(pressure, 'Pa', 3)}; gears and bearings have less than "
-        "2.5 GPa, hardened steel yields from some 3 GPa on, and the model is elastic": (
-            pressure > 2.5e9
-        ),
-        f"film: {_range(films, 'm')}; most are from 10 nm to 10 µm, so units may be wrong": (
-            films.min() < 2e-9 or films.max() > 2e-5
-        ),
+        "2.5 GPa, hardened steel yields from some 3 GPa on, and the model is "
+        "elastic": pressure > 2.5e9,
+        f"film: {_range(films, 'm')}; most are from 10 nm to 10 µm, so units may be "
+        "wrong": films.min() < 2e-9 or films.max() > 2e-5,
         f"contact width: {waves:.2g} times the shortest wave at the smallest force; with less than "
         "20 times the probability means little": waves < 20.0,
         f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "
@@ -128,13 +125,11 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"grid: {points:.3g} points in the shortest wave; the curvature of asperities needs "
         "10": lines.follows_rolling and points < 10.0 * (1.0 - 1e-6),
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
-        f"more than a tenth of the load, {more}where the film of smooth rollers is less certain": (
-            loaded
-        ),
+        f"more than a tenth of the load, {more}where the film of smooth rollers is less "
+        "certain": loaded,
         f"load share: at {rubs} of {share.size} operating points the surfaces' asperities carry "
-        f"more than a tenth of the load, {most}where the film of smooth rollers is less certain": (
-            rubs
-        ),
+        f"more than a tenth of the load, {most}where the film of smooth rollers is less "
+        "certain": rubs,
         f"roughness: at {bends} of {share.size} operating points the oil changes it by more than a "
         "tenth of the film, where the linear response is not valid": bends,
     }

@@ -114,10 +114,9 @@ def film_at_records(
         ``dynamic_viscosity``; with a meniscus also its distance, with inlet shear heating its
         factor, with load sharing the asperities' share.
     """
-    force, speed, temperature, oil, slip = (
-        xr.DataArray(experiment[name].values, dims="record")
-        for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
-    )
+    names = "force", "speed", "temperature", "lubricant", "slide_to_roll_ratio"
+    columns = (xr.DataArray(experiment[name].values, dims="record") for name in names)
+    force, speed, temperature, oil, slip = columns
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
     choices = film_model | {"slide_to_roll_ratio": slip}
     table = film_at(properties, rollers, force, speed, formulas, **choices)

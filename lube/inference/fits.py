@@ -80,8 +80,7 @@ def alpha_logits(curves: RecordCurves, comparison: Data) -> xr.DataArray:
     xarray.DataArray
         Over (factor, film_formula, record).
     """
-    factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
-    logits = curves.logits(_lambda_ratios(comparison, factor))
+    logits = curves.logits(_lambda_ratios(comparison, xr.DataArray(ALPHA_FACTORS, dims="factor")))
     return logits.transpose("factor", "film_formula", "record")
 
 

@@ -123,10 +123,8 @@ def line_ratios(
     if distinct_alignments(max(turns), *motion) > 1:
         persistent = persistent_share(*crosswise(windows, spec, pair.seed, LINES))
         persistent = np.where(np.isfinite(persistent), persistent, 1.0)
-    by_turns = [
-        [scatter_ratio(one, *motion, part, drift) for part in persistent.T]
-        for one in (known, *turns)
-    ]
+    each = known, *turns
+    by_turns = [[scatter_ratio(one, *motion, part, drift) for part in persistent.T] for one in each]
     return np.array(by_turns[1:]) / by_turns[0]
 
 

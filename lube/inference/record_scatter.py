@@ -156,14 +156,12 @@ def _variance_ratio(slipping, rolling):
 
 def _components(study, slip, turns, persistent, run):
     """Scatter ratios due to each line alone, and due to both together, shape (P,) each."""
-    spec = study.line_spec
+    spec, drift = study.line_spec, study.rig.drift
     reach, ratios = spec.longest_wavelength / spec.spacing, speed_ratios(slip)
     alone, together = np.empty((2, turns.size))
     for point, (length, part) in enumerate(zip(turns, persistent.T, strict=True)):
-        whole, renewed = (
-            scatter_ratio(length, ratios, spec.points, reach, kept, study.rig.drift, run)
-            for kept in (part, np.zeros(2))
-        )
+        whole = scatter_ratio(length, ratios, spec.points, reach, part, drift, run)
+        renewed = scatter_ratio(length, ratios, spec.points, reach, np.zeros(2), drift, run)
         together[point] = min(max(1.0 - np.sum(part), 0.0) * renewed, whole)
         alone[point] = whole - together[point]
     return alone, together

@@ -212,11 +212,9 @@ def surface_curves(surfaces: xr.Dataset, comparison: xr.Dataset, has_shape: bool
     films = np.log(surfaces["curve_lambda_ratio"].values)
     columns = (surfaces[f"curve_{name}"].values.T for name in ("probability", "sample_size"))
     of_records = [contact_curve(films, *of_record) for of_record in zip(*columns, strict=True)]
-    few = np.log(surfaces["layer_lambda_ratio"].values)
-    of_layers = [
-        [contact_curve(few, of_record, np.full(few.size, np.nan)) for of_record in of_layer.T]
-        for of_layer in surfaces["layer_curve_probability"].values
-    ]
+    few, layers = np.log(surfaces["layer_lambda_ratio"].values), surfaces["layer_curve_probability"]
+    unknown = np.full(few.size, np.nan)
+    of_layers = [[contact_curve(few, one, unknown) for one in layer.T] for layer in layers.values]
     offsets, strengths = curve_offsets(comparison, has_shape), surfaces["layer_strength"].values
     return RecordCurves(of_records, offsets, strengths, of_layers, "surface")
 

@@ -15,16 +15,15 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.special
+from numpy.polynomial.laguerre import laggauss
+from numpy.polynomial.legendre import leggauss
 
 from lube.types import Array, Values
 
 _MANY, _FEW = 60, 20
 """Nodes for heights and for curvatures; with the few, and eight for each other variable, fractions
 are off by 0.001."""
-_NODES = {
-    count: (*np.polynomial.laguerre.laggauss(count), *np.polynomial.legendre.leggauss(count))
-    for count in (_MANY, _FEW)
-}
+_NODES = {count: (*laggauss(count), *leggauss(count)) for count in (_MANY, _FEW)}
 _NORMAL, _NORMAL_WEIGHTS = np.polynomial.hermite_e.hermegauss(8)
 _NORMAL_WEIGHTS /= _NORMAL_WEIGHTS.sum()
 _WIDE = 9.0
@@ -290,9 +289,8 @@ def passing_contacts(
         more = weight * spread * decay * np.maximum(order, 0.0) * rising
         appearing += spacing * np.sum(more)
         if has_edges:
-            first, last = (
-                0.5 * weight * decay * (np.sqrt(c) + sign * p / spread) for sign in (-1.0, 1.0)
-            )
+            scale, own = 0.5 * weight * decay, np.sqrt(c)
+            first, last = scale * (own - p / spread), scale * (own + p / spread)
             appearing += first[0] + last[-1]
     number = spacing * np.sum(density)
     if has_edges:
@@ -366,10 +364,8 @@ def sharp_surface_summit_share(
     second = np.sqrt(np.maximum(left[1, 1] - shared**2, least))
 
     def weight(kappa, mean):
-        difference, twist = (
-            some / by_height[0] * mean + other * (kappa - mean)
-            for some, other in zip(by_height[1:], by_curvature, strict=True)
-        )
+        difference = by_height[1] / by_height[0] * mean + by_curvature[0] * (kappa - mean)
+        twist = by_height[2] / by_height[0] * mean + by_curvature[1] * (kappa - mean)
         total = 0.0
         for one, chance in zip(_NORMAL, _NORMAL_WEIGHTS, strict=True):
             rest = kappa**2 - (difference + first * one) ** 2

@@ -127,8 +127,6 @@ class LoadShare:
     ----------
     share : callable
         Share from the lambda ratio.
-    source : str
-        Where it is from.
     roughness : str
         What the film is divided by: the property ``composite_rms_roughness`` of the rollers, or
         ``mean_ra_roughness``.
@@ -137,31 +135,20 @@ class LoadShare:
     """
 
     share: Callable[[Values], Values]
-    source: str
     roughness: str = "composite_rms_roughness"
     pressure: float = np.inf
 
 
-_ZHOU = (
-    "R. S. Zhou, M. R. Hoeprich, J. Tribol. 113 (1991) 590, Eq. 29, constants of Lubricants 11 "
-    "(2023) 369, Table 4"
-)
 LOAD_SHARES = {
-    "zhou-hoeprich-1991": LoadShare(
-        lambda ratio: np.exp(-2.32 * ratio**0.97), f"{_ZHOU}, first pair"
-    ),
-    "zhou-hoeprich-1991-second": LoadShare(
-        lambda ratio: np.exp(-1.90 * ratio**0.99), f"{_ZHOU}, second pair"
-    ),
-    "aihara-1987": LoadShare(
-        lambda ratio: np.exp(-1.8 * ratio**1.2),
-        "S. Aihara, J. Tribol. 109 (1987) 471, after Patir and Cheng",
-        pressure=AIHARA_PRESSURE,
-    ),
+    # R. S. Zhou, M. R. Hoeprich, J. Tribol. 113 (1991) 590, Eq. 29, first and second pair of the
+    # constants of Lubricants 11 (2023) 369, Table 4.
+    "zhou-hoeprich-1991": LoadShare(lambda ratio: np.exp(-2.32 * ratio**0.97)),
+    "zhou-hoeprich-1991-second": LoadShare(lambda ratio: np.exp(-1.90 * ratio**0.99)),
+    # S. Aihara, J. Tribol. 109 (1987) 471, after Patir and Cheng.
+    "aihara-1987": LoadShare(lambda ratio: np.exp(-1.8 * ratio**1.2), pressure=AIHARA_PRESSURE),
+    # A. Doleschel, thesis, TU Munich, as in A. Arana et al., Proc. IMechE J 233 (2019) 303.
     "doleschel": LoadShare(
-        lambda ratio: np.clip(1.0 - 0.5 * ratio, 0.0, None) ** 2,
-        "A. Doleschel, thesis, TU Munich, as in A. Arana et al., Proc. IMechE J 233 (2019) 303",
-        "mean_ra_roughness",
+        lambda ratio: np.clip(1.0 - 0.5 * ratio, 0.0, None) ** 2, "mean_ra_roughness"
     ),
 }
 """Published curves of the load that asperities carry, by name."""

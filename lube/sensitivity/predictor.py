@@ -1,5 +1,6 @@
 """Probabilities of many samples at all operating points, by surrogates of films and contact."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import chain
 
@@ -12,8 +13,8 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_chosen, is_sum, models
 from lube.sensitivity.samples import deviations, over_run, quantiles
-from lube.sensitivity.shape import EffectiveRatio
-from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
+from lube.sensitivity.shape import effective_ratio
+from lube.sensitivity.surrogate import Surrogate, groups, held_out, interpolant
 from lube.threads import on_threads
 from lube.types import Array, Pair
 
@@ -45,7 +46,7 @@ class Predictor:
         The study.
     surrogates : dict
         Surrogate of each `lube.sensitivity.runs.Model`.
-    film : Interpolant or None
+    film : callable or None
         Logarithm of the computed film over that of Moes' formula, over the logarithms of M, L and
         the viscosity; None if the study does not choose it.
     film_error : float
@@ -56,9 +57,9 @@ class Predictor:
 
     deviating: Deviating
     surrogates: dict[Model, Surrogate]
-    film: Interpolant | None
+    film: Callable | None
     film_error: float
-    effective: dict[Model, EffectiveRatio]
+    effective: dict[Model, Callable]
 
     @classmethod
     def of(
@@ -82,7 +83,7 @@ class Predictor:
         """
         surrogates = {}
         effective = {
-            model: EffectiveRatio.of(deviating, runs, model.gap, model.contact_model, responses)
+            model: effective_ratio(deviating, runs, model.gap, model.contact_model, responses)
             for model in models(deviating)
             if not model.gap.is_uniform
         }
@@ -121,25 +122,24 @@ class Predictor:
         """
         points = stacked_points(self.deviating).to_dataframe().assign(deviation=deviation)
         known = points.set_index(list(POINT_DIMS))["deviation"]
-        absolute, relative, run_counts, left_out_counts = [], [], [], []
+        rows = []
         for model, surrogate in self.surrogates.items():
             own = _of_model(runs, model)
             left_out = np.isfinite(surrogate.missed)
             at = own[list(POINT_DIMS)].isel(run=left_out).to_dataframe()[list(POINT_DIMS)]
             missed = surrogate.missed[left_out]
             scaled = missed / known.loc[list(at.itertuples(index=False, name=None))].to_numpy()
-            absolute.append(np.sqrt(np.mean(missed**2)))
-            relative.append(np.sqrt(np.mean(scaled**2)))
+            errors = (np.sqrt(np.mean(each**2)) for each in (missed, scaled))
             fitted = np.isfinite(own["breakthrough_probability"].values).all(axis=1)
-            run_counts.append(fitted.sum())
-            left_out_counts.append(left_out.sum())
+            rows.append((*errors, fitted.sum(), left_out.sum()))
+        absolute, relative, run_counts, left_out_counts = zip(*rows, strict=True)
         return {
             "surrogate_model": [", ".join(model) for model in self.surrogates],
-            "surrogate_error": six_digits(np.array(absolute)),
-            "relative_surrogate_error": six_digits(np.array(relative)),
-            "run_count": run_counts,
-            "left_out_count": left_out_counts,
-            "film_surrogate_error": six_digits(np.array(self.film_error)).item(),
+            "surrogate_error": six_digits(absolute),
+            "relative_surrogate_error": six_digits(relative),
+            "run_count": list(run_counts),
+            "left_out_count": list(left_out_counts),
+            "film_surrogate_error": six_digits(self.film_error).item(),
         }
 
     def log_probability(
@@ -247,6 +247,6 @@ def _film(deviating, runs):
     ratio = np.log(computed["film_thickness"] / moes).values[:, None]
     variables = np.log([computed[name].values for name in FILM_GROUPS])
     last = slice(-held_out(len(ratio)), None)
-    trial = Interpolant.of(variables[:, : last.start], ratio[: last.start])
+    trial = interpolant(variables[:, : last.start], ratio[: last.start])
     missed = trial(variables[:, last]) - ratio[last]
-    return Interpolant.of(variables, ratio), float(np.sqrt(np.mean(missed**2)))
+    return interpolant(variables, ratio), float(np.sqrt(np.mean(missed**2)))

@@ -119,10 +119,8 @@ def with_responses(
     for *both, width, slip in zip(*weights, widths, slips, strict=True):
         response = np.einsum("m,l,ml...", *both, table.values[:, :, np.searchsorted(number, slip)])
         wanted = known * solved["contact_half_width"].item() / width
-        by_angle = [
-            at_wavelengths(wanted, known, response[:, at], position, angle)
-            for at, angle in enumerate(angles)
-        ]
+        each = zip(response.swapaxes(0, 1), angles, strict=True)
+        by_angle = [at_wavelengths(wanted, known, one, position, angle) for one, angle in each]
         found.append(np.stack(by_angle, axis=1))
     like = table[0, 0, 0].drop_vars([*NUMBERS, "slide_to_roll_ratio"])
     found = like.expand_dims(run=slips.size).copy(data=np.stack(found))

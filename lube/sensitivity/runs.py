@@ -4,7 +4,7 @@ All runs draw the same random numbers, so that they differ by the quantities alo
 Gaussian; if heights are not, the film is that in which Gaussian ones touch as often.
 """
 
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -75,12 +75,9 @@ PLAIN_LINE = Model("line", "flat", "none")
 def models(deviating: Deviating) -> list[Model]:
     """Return all ways from film to probability that a study leaves open."""
     study = deviating.study
-    return [
-        Model(contact, shape, deformation)
-        for contact in deviating.choices("contact_model", study.contact_model[0])
-        for shape in deviating.choices("film_shape", study.film_shape)
-        for deformation in deviating.choices("roughness_deformation", study.roughness_deformation)
-    ]
+    own = study.contact_model[0], study.film_shape, study.roughness_deformation
+    choices = map(deviating.choices, Model._fields, own)
+    return [Model(*chosen) for chosen in product(*choices)]
 
 
 def is_sum(deviating: Deviating, model: Model) -> bool:
@@ -195,8 +192,7 @@ def run(
         if responses is None:
             responses = solve_responses(deviating, [contact_model], unit, points, threads)
         films = [
-            (runs, with_responses(film, responses, contact_model, slips[runs]))
-            for runs, film in films
+            (at, with_responses(film, responses, contact_model, slips[at])) for at, film in films
         ]
     parts = ((runs, film, same) for runs, film in films for same in _same_samples(unit[runs]))
     of_samples = [(runs[same], film.isel(run=same)) for runs, film, same in parts]

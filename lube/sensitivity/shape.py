@@ -1,8 +1,7 @@
 """The flat film that contact sees where a film has a shape, or the oil deforms the roughness."""
 
 import itertools
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import scipy.special
@@ -14,7 +13,6 @@ from lube.grid.levels import rolling
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.responses import KINDS, NUMBERS, response_table, typical_films
 from lube.study.uncertainty import deviating_lines
-from lube.types import Array
 
 NODES = {"moes_load": 12, "moes_material": 7, "contact_half_width": 6, "lambda_ratio": 20}
 """Numbers of levels, evenly spaced in the logarithm."""
@@ -28,73 +26,65 @@ INSIDE = np.abs(WINDOW) <= 1.0
 """Those in the contact."""
 
 
-@dataclass(frozen=True, eq=False)
-class EffectiveRatio:
-    """Table of lambda ratios of the flat films in which as many points of the contact touch.
+def effective_ratio(
+    deviating: Deviating, runs: xr.Dataset, gap: Gap, contact_model: str, solved=None
+) -> Callable[[xr.DataArray, xr.Dataset, Mapping], xr.DataArray]:
+    """Tabulate lambda ratios of the flat films in which as many points of the contact touch.
 
     A film with a shape is thinner at the outlet, so points touch there first. Where the oil deforms
     the roughness, each position has an rms height of its own. The share of points that touch, of
     Gaussian heights, gives the ratio; the rest of what shape and deformation do is smooth.
 
-    Attributes
+    Parameters
     ----------
-    axes : dict of str to numpy.ndarray
-        Variables and their levels; of films the logarithms, the last is the lambda ratio.
-    multiple : scipy.interpolate.NdBSpline
-        Effective ratio over the lambda ratio.
+    deviating : Deviating
+        The study, for the modulus of its rollers and a typical oil.
+    runs : xarray.Dataset
+        Variables `NODES`. The table covers their films, and some more.
+    gap : Gap
+        With a shape of the film, a deformation of the roughness, or both.
+    contact_model : str
+        As in a study.
+    solved : xarray.Dataset, optional
+        From `lube.sensitivity.responses.solve_responses`, with a deformation; its levels of
+        Moes' numbers are then those of the table.
+
+    Returns
+    -------
+    callable
+        Ratio by the table, from the lambda ratios of films, the films, and the deviations of the
+        lines.
     """
+    levels = {
+        name: np.geomspace(0.9 * runs[name].min().item(), 1.1 * runs[name].max().item(), count)
+        for name, count in NODES.items()
+    }
+    if gap.is_answered:
+        levels |= {name: solved[name].values for name in NUMBERS}
+    numbers = {name: levels[name] for name in NUMBERS}
+    shapes = _shapes(deviating, numbers) if gap.has_shape else np.where(INSIDE, 1.0, np.inf)
+    # Variables and their levels; of films the logarithms, the last is the lambda ratio.
+    axes = {name: np.log(each) for name, each in numbers.items()}
+    if gap.is_answered:
+        half_widths = levels["contact_half_width"]
+        uncertain = {name: getattr(deviating.study.uncertainty, name) for name in BAND}
+        band = {name: np.linspace(*one.ends, BAND_NODES) for name, one in uncertain.items() if one}
+        rough = _deformed(deviating, solved, contact_model, half_widths, band)
+        shapes = shapes.reshape(*shapes.shape[:-1], *(1,) * (1 + len(band)), -1) / rough
+        axes |= {"contact_half_width": np.log(half_widths)} | band
+    ratios = levels["lambda_ratio"]
+    found = [_ratio(ratios[:, None], one) / ratios for one in shapes.reshape(-1, WINDOW.size)]
+    axes["lambda_ratio"] = np.log(ratios)
+    multiple = _spline(axes, np.reshape(found, [each.size for each in axes.values()]))
 
-    axes: dict[str, Array]
-    multiple: NdBSpline
-
-    @classmethod
-    def of(
-        cls, deviating: Deviating, runs: xr.Dataset, gap: Gap, contact_model: str, solved=None
-    ) -> "EffectiveRatio":
-        """Tabulate the ratio over the films of some runs, and some more.
-
-        Parameters
-        ----------
-        deviating : Deviating
-            The study, for the modulus of its rollers and a typical oil.
-        runs : xarray.Dataset
-            Variables `NODES`.
-        gap : Gap
-            With a shape of the film, a deformation of the roughness, or both.
-        contact_model : str
-            As in a study.
-        solved : xarray.Dataset, optional
-            From `lube.sensitivity.responses.solve_responses`, with a deformation; its levels of
-            Moes' numbers are then those of the table.
-        """
-        levels = {
-            name: np.geomspace(0.9 * runs[name].min().item(), 1.1 * runs[name].max().item(), count)
-            for name, count in NODES.items()
-        }
-        if gap.is_answered:
-            levels |= {name: solved[name].values for name in NUMBERS}
-        numbers = {name: levels[name] for name in NUMBERS}
-        film = _shapes(deviating, numbers) if gap.has_shape else np.where(INSIDE, 1.0, np.inf)
-        axes = {name: np.log(each) for name, each in numbers.items()}
-        if gap.is_answered:
-            half_widths = levels["contact_half_width"]
-            given = {name: getattr(deviating.study.uncertainty, name) for name in BAND}
-            band = {name: np.linspace(*one.ends, BAND_NODES) for name, one in given.items() if one}
-            rough = _deformed(deviating, solved, contact_model, half_widths, band)
-            film = film.reshape(*film.shape[:-1], *(1,) * (1 + len(band)), -1) / rough
-            axes |= {"contact_half_width": np.log(half_widths)} | band
-        ratios = levels["lambda_ratio"]
-        values = [_ratio(ratios[:, None], one) / ratios for one in film.reshape(-1, WINDOW.size)]
-        axes["lambda_ratio"] = np.log(ratios)
-        return cls(axes, _spline(axes, np.reshape(values, [each.size for each in axes.values()])))
-
-    def __call__(self, ratio: xr.DataArray, film: xr.Dataset, values: Mapping) -> xr.DataArray:
-        """Find the ratio of films, and of deviations of the lines, with given lambda ratios."""
+    def effective(ratio, film, values):
         given = {**{name: np.log(film[name]) for name in NODES if name != "lambda_ratio"}, **values}
-        given = xr.broadcast(np.log(ratio), *(given[name] for name in list(self.axes)[:-1]))
-        each = zip((*given[1:], given[0]), self.axes.values(), strict=True)
+        given = xr.broadcast(np.log(ratio), *(given[name] for name in list(axes)[:-1]))
+        each = zip((*given[1:], given[0]), axes.values(), strict=True)
         points = np.stack([np.clip(one.values, *axis[[0, -1]]) for one, axis in each], axis=-1)
-        return given[0].copy(data=np.exp(given[0].values) * self.multiple(points))
+        return given[0].copy(data=np.exp(given[0].values) * multiple(points))
+
+    return effective
 
 
 def _shapes(deviating, numbers):

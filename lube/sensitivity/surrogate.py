@@ -8,6 +8,7 @@ a shape or an answer of the oil. Its normal quantile is nearly linear in the lam
 function of these groups serves all operating points.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +18,6 @@ from scipy.interpolate import RBFInterpolator
 
 from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating
-from lube.sensitivity.shape import EffectiveRatio
 from lube.study.uncertainty import deviating_heights
 from lube.types import Array
 
@@ -33,7 +33,7 @@ def held_out(count: int) -> int:
 
 
 def groups(
-    deviating: Deviating, film: xr.Dataset, values: dict, gap: Gap, effective: EffectiveRatio | None
+    deviating: Deviating, film: xr.Dataset, values: dict, gap: Gap, effective: Callable | None
 ) -> xr.DataArray:
     """Form the dimensionless groups on which the probability depends.
 
@@ -47,8 +47,9 @@ def groups(
         From `lube.sensitivity.samples.deviations`.
     gap : Gap
         If it is not plain, the probability depends on Moes' numbers, too.
-    effective : EffectiveRatio or None
-        The lambda ratios that contact sees; None in a plain gap.
+    effective : callable or None
+        The lambda ratios that contact sees, from `lube.sensitivity.shape.effective_ratio`; None in
+        a plain gap.
 
     Returns
     -------
@@ -79,56 +80,41 @@ def groups(
     return xr.concat(each, "group", coords="minimal", compat="override", join="exact")
 
 
-@dataclass(frozen=True, eq=False)
-class Interpolant:
-    """Radial basis functions between some points, with variables of alike scatter.
+def interpolant(
+    variables: Array, values: Array, weight: Array | float = 1.0
+) -> Callable[[Array], Array]:
+    """Interpolate by radial basis functions between points with variables of alike scatter.
 
-    Attributes
+    Parameters
     ----------
-    middle, scale : numpy.ndarray, shape (variables, 1)
-        By which the variables are moved and divided.
-    functions : scipy.interpolate.RBFInterpolator
-        Cubic functions of the distance, and a linear one.
+    variables : numpy.ndarray
+        Shape (variables, points); those that do not vary are left out. Of equal points the first
+        counts.
+    values : numpy.ndarray
+        Shape (points, columns).
+    weight : numpy.ndarray or float, optional
+        How much a deviation counts at each point, shape (points,).
+
+    Returns
+    -------
+    callable
+        All columns at other points, shape (points, columns), from their variables; further
+        variables do not count.
     """
+    middle, scale = variables.mean(axis=1)[:, None], variables.std(axis=1)[:, None]
+    varied = (scale > 1e-9 * np.abs(middle))[:, 0]
 
-    middle: Array
-    scale: Array
-    functions: RBFInterpolator
+    def scaled(variables):
+        return ((variables[: len(middle)] - middle)[varied] / scale[varied]).T
 
-    @classmethod
-    def of(cls, variables: Array, values: Array, weight: Array | float = 1.0) -> "Interpolant":
-        """Interpolate between known values.
-
-        Parameters
-        ----------
-        variables : numpy.ndarray
-            Shape (variables, points); those that do not vary are left out. Of equal points the
-            first counts.
-        values : numpy.ndarray
-            Shape (points, columns).
-        weight : numpy.ndarray or float, optional
-            How much a deviation counts at each point, shape (points,).
-
-        Returns
-        -------
-        Interpolant
-            The function.
-        """
-        middle, scale = variables.mean(axis=1), variables.std(axis=1)
-        varied = scale > 1e-9 * np.abs(middle)
-        scale = np.where(varied, scale, np.inf)[:, None]
-        points = (variables - middle[:, None]) / scale
-        # Points that differ by rounding alone would make the equations singular.
-        first = np.unique(points.round(9), axis=1, return_index=True)[1]
-        weight = np.maximum(np.broadcast_to(weight, len(values)), LEAST_WEIGHT)[first]
-        options = {"kernel": "cubic", "degree": 1, "smoothing": SMOOTHING / weight**2}
-        functions = RBFInterpolator(points[varied][:, first].T, values[first], **options)
-        return cls(middle[:, None], scale, functions)
-
-    def __call__(self, variables: Array) -> Array:
-        """Evaluate all columns at some points, shape (points, columns)."""
-        points = (variables - self.middle) / self.scale
-        return self.functions(points[np.isfinite(self.scale[:, 0])].T)
+    # Points that differ by rounding alone would make the equations singular.
+    points = scaled(variables)
+    first = np.unique(points.round(9), axis=0, return_index=True)[1]
+    weight = np.maximum(np.broadcast_to(weight, len(values)), LEAST_WEIGHT)[first]
+    # Cubic functions of the distance, and a linear one.
+    options = {"kernel": "cubic", "degree": 1, "smoothing": SMOOTHING / weight**2}
+    functions = RBFInterpolator(points[first], values[first], **options)
+    return lambda variables: functions(scaled(variables))
 
 
 @dataclass(frozen=True)
@@ -140,19 +126,19 @@ class Surrogate:
 
     Attributes
     ----------
-    parts : tuple of Interpolant
+    parts : tuple of callable
         Functions of as many of the groups as each has variables.
     missed : numpy.ndarray
         Error of the logarithm of the probability of each run, if the run is left out of the fit;
         NaN if it never was.
     """
 
-    parts: tuple[Interpolant, ...]
+    parts: tuple[Callable, ...]
     missed: Array | None = None
 
     @classmethod
     def of(
-        cls, variables: Array, probability: Array, parts: tuple[Interpolant, ...], is_sum: bool
+        cls, variables: Array, probability: Array, parts: tuple[Callable, ...], is_sum: bool
     ) -> "Surrogate":
         """Fit the runs of a model.
 
@@ -165,7 +151,7 @@ class Surrogate:
             Groups of each run, shape (groups, runs).
         probability : numpy.ndarray
             Shape (runs, seeds); runs with NaN are left out.
-        parts : tuple of Interpolant
+        parts : tuple of callable
             Parts that are known already.
         is_sum : bool
             Whether these parts are all; the runs then only show the error. Otherwise one part is
@@ -187,7 +173,7 @@ class Surrogate:
         rest = quantile - cls(parts).quantile(variables)
 
         def fit(some):
-            return cls((*parts, Interpolant.of(variables[:, some], rest[some], weight[some])))
+            return cls((*parts, interpolant(variables[:, some], rest[some], weight[some])))
 
         last = slice(0 if is_sum else -held_out(len(typical)), None)
         trial = cls(parts) if is_sum else fit(slice(last.start))
@@ -199,7 +185,7 @@ class Surrogate:
 
     def quantile(self, variables: Array) -> Array | float:
         """Compute the normal quantile at some groups, shape (points, seeds)."""
-        return sum(part(variables[: len(part.middle)]) for part in self.parts)
+        return sum(part(variables) for part in self.parts)
 
     def log_probability(self, variables: Array) -> Array:
         """Compute the logarithm of the probability at some groups, shape (points, seeds)."""

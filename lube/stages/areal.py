@@ -82,5 +82,4 @@ def contact_of_surfaces(
             found.append(surface_contact(pair, some, threads, **choices))
     found = xr.concat(found, "film_formula", join="exact")
     # If the film is the same at all slips, so is the probability.
-    found = xr.broadcast(found.drop_attrs())[0]
-    return found.transpose(*CONTACT_DIMS).copy(deep=True)
+    return xr.broadcast(found.drop_attrs())[0].transpose(*CONTACT_DIMS).copy(deep=True)

@@ -162,8 +162,7 @@ def _agreement(values, experiment):
         for shares in experiment["contact_share"].transpose("threshold", "record").values:
             known = np.isfinite(shares) & np.isfinite(sides[0])
             rows.append(agreement(*(each[known] for each in (*sides, shares))))
-    shape = len(values[0]), -1
-    return {name: np.reshape([row[name] for row in rows], shape) for name in rows[0]}
+    return {name: np.reshape([row[name] for row in rows], (len(values[0]), -1)) for name in rows[0]}
 
 
 def agreement(

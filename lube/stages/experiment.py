@@ -65,10 +65,8 @@ def simulated_experiment(film: xr.Dataset, study: Study, threads: int = 1) -> xr
     """
     every = operating_points(film.isel(film_formula=0), rolling(study.slips))
     known = known_films(every, study.gap).values
-    refused = [
-        f"{_name_of_point(levels_at(every, number), 0, study)}: the film is not known"
-        for number in np.flatnonzero(~known)
-    ]
+    unknown = [levels_at(every, number) for number in np.flatnonzero(~known)]
+    refused = [f"{_name_of_point(one, 0, study)}: the film is not known" for one in unknown]
     points = every.isel(operating_point=known)
     levels = [levels_at(points, number) for number in range(points.sizes["operating_point"])]
     exact = dict.fromkeys(LEVELS, 0.0)

@@ -13,13 +13,8 @@ from lube.study.rollers import RollerPair
 from lube.study.study import Study
 from lube.types import Datasets
 
-_DIGITS = {
-    "central_film": 6,
-    "minimum_film": 6,
-    "film_end": 6,
-    "rolling_resistance": 5,
-    "mass_flux_defect": 1,
-}
+_DIGITS = dict.fromkeys(("central_film", "minimum_film", "film_end"), 6)
+_DIGITS |= {"rolling_resistance": 5, "mass_flux_defect": 1}
 """Numbers of a film profile that become variables, and how many of their digits are kept."""
 
 

@@ -66,10 +66,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     shares, moments = map(np.array, zip(*found, strict=True))
     shape, dims = (len(SKEWNESS), len(KURTOSIS)), ("height_skewness", "height_kurtosis")
     shares = shares.reshape(*shape, *shares.shape[1:])
-    table = {
-        name: ((*dims, "realisation", "lambda_ratio"), shares[..., which])
-        for which, name in enumerate(PROBABILITIES)
-    }
+    over = *dims, "realisation", "lambda_ratio"
+    table = {name: (over, shares[..., which]) for which, name in enumerate(PROBABILITIES)}
     names = "attained_skewness", "attained_kurtosis"
     for name, values in zip(names, np.moveaxis(moments.mean(axis=1), -1, 0), strict=True):
         table[name] = dims, values.reshape(shape)
@@ -79,8 +77,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     found = with_limits(xr.Dataset(table, levels).transpose("realisation", ...), independent)
     found = found.drop_vars(PROBABILITIES).assign(contact_half_width=half_width)
     attributes = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
-    found = found.assign_coords(revolutions=1).assign_attrs(attributes)
-    return label(found, "height_distribution")
+    return label(found.assign_coords(revolutions=1).assign_attrs(attributes), "height_distribution")
 
 
 def _moments(line):

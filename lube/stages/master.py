@@ -92,6 +92,6 @@ def _layer_map(lines, film, boundary_layer):
         layer = boundary_layer.model_copy(update={"shear_strength": strength})
         mapped = _map(lines, film, layer, levels, ("layer_lambda_ratio", "layer_contact_width"))
         maps.append(mapped["breakthrough_probability"])
-    study = boundary_layer.shear_strength / boundary_layer.critical_thickness
-    strengths = xr.DataArray(LAYER_FACTORS * study, dims="layer_strength", name="layer_strength")
+    strengths = LAYER_FACTORS * boundary_layer.strength
+    strengths = xr.DataArray(strengths, dims="layer_strength", name="layer_strength")
     return xr.concat(maps, strengths, join="exact").transpose("realisation", ...)

@@ -41,9 +41,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = film.transpose(*POINT_DIMS, ...)
     threshold, reading = _reading(inputs["electrical"], study)
     point = inputs["lubricant"], study.rough_rollers, film["force"], film["speed"]
-    by_coefficient = planning.film_by_coefficient(
-        *point, study.film_formulas[0], slide_to_roll_ratio=slip, **study.inlet_model
-    )
+    options = study.inlet_model | {"slide_to_roll_ratio": slip}
+    by_coefficient = planning.film_by_coefficient(*point, study.film_formulas[0], **options)
     by_coefficient = by_coefficient.transpose(*POINT_DIMS).values.ravel()
     unknown = {"half_width": dict.fromkeys(study.contact_model, 0.0)}
     if "sensitivity" in inputs:

@@ -58,5 +58,4 @@ def make_batch(study: Study, inputs: Datasets, number: int) -> xr.Dataset:
         tables.append(table)
     table = xr.concat(tables, "run").set_coords(POINT_DIMS)
     factors = [factor.name for factor in deviating.factors]
-    table = table.assign_coords(factor=factors, seed=range(SEEDS))
-    return label(table, "sensitivity_runs_batch")
+    return label(table.assign_coords(factor=factors, seed=range(SEEDS)), "sensitivity_runs_batch")

@@ -12,13 +12,8 @@ from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import ROLLERS
 from lube.study.study import Study
 from lube.study.topography_lines import preparation, prepared
+from lube.surfaces import surface_statistics as statistics
 from lube.surfaces.measured_spectrum import line_spectrum
-from lube.surfaces.surface_statistics import (
-    height_distribution,
-    hurst_exponent,
-    roll_off,
-    waves_of_surface,
-)
 from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
 
@@ -77,9 +72,11 @@ def _surface(topography, line, hurst):
     """Describe the surface of a roller; fits use the waves in the band of its line."""
     surface = prepared(topography)
     spectrum = line_spectrum(surface, preparation(topography))
-    waves = waves_of_surface(spectrum, 2.0 * np.pi / line.q_min, line.shortest_wavelength)
-    bend = roll_off(spectrum, waves)
+    longest = 2.0 * np.pi / line.q_min
+    waves = statistics.waves_of_surface(spectrum, longest, line.shortest_wavelength)
+    bend = statistics.roll_off(spectrum, waves)
     shorter = waves if bend is None else waves._replace(longest=bend.value)
+    exponent = statistics.hurst_exponent(spectrum, shorter)
     table = {
         "wave_vector": ("wave", spectrum.wave_vector),
         "filter_transfer": ("wave", spectrum.transfer),
@@ -93,9 +90,9 @@ def _surface(topography, line, hurst):
         "use": topography.use,
         **values_with_limits("density", _density(spectrum), "wave"),
         **values_with_limits("roll_off_wavelength", bend or _UNKNOWN),
-        **values_with_limits("hurst_exponent", hurst_exponent(spectrum, shorter) or _UNKNOWN),
+        **values_with_limits("hurst_exponent", exponent or _UNKNOWN),
     }
-    for name, estimate in height_distribution(surface.heights).items():
+    for name, estimate in statistics.height_distribution(surface.heights).items():
         table |= values_with_limits(name, estimate)
     levels = {"wave": np.arange(spectrum.wave_vector.size), "standard_height": STANDARD_HEIGHTS}
     return xr.Dataset(table, levels)

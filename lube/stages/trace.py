@@ -1,6 +1,5 @@
 """The trace stage: contact at every time step, and the details of one contact window."""
 
-import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
@@ -21,8 +20,6 @@ from lube.schema import label
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.types import Datasets
-
-log = logging.getLogger(__name__)
 
 REALISATION = 0
 """The realisation that traces show."""
@@ -154,8 +151,7 @@ def contact_window(
     if gap.is_flattened:
         contact = [point[name].item() for name in ("contact_half_width", *_MOES)]
         pair = [Waves(line, grid).flattened(*contact) for line in pair]
-    places = [surface_position(step, ratio) for ratio in ratios]
-    both = zip(pair, places, strict=True)
+    both = zip(pair, (surface_position(step, ratio) for ratio in ratios), strict=True)
     heights = np.array([line[(place + window) % line.size] for line, place in both], np.int64)
     if gap.is_answered:
         heights += lifted(pair, grid, answers_at(point, gap.has_shape).values, ratios, step, window)
@@ -168,8 +164,7 @@ def contact_window(
         window, heights, overlap = window[shown], heights[:, shown], overlap[shown]
     heights, overlaps = heights * grid.height_step, overlap * grid.height_step
     found = {"height": (("roller", "x"), heights), "overlap": ("x", overlaps)}
-    segments = _segments(overlap, point, grid).items()
-    found |= {name: ("segment", values) for name, values in segments}
+    found |= {name: ("segment", each) for name, each in _segments(overlap, point, grid).items()}
     return xr.Dataset(found, {"x": window * grid.spacing, "roller": lines["roller"]})
 
 

@@ -96,8 +96,7 @@ def _curve(spec):
 
 def _waves(spec):
     """Wavenumbers, rad/m, and variances, m^2, of bands of both surfaces' waves, rising."""
-    both = [wave_powers(spec, roller) for roller in (0, 1)]
-    wavenumber, variance = np.concatenate(both, axis=1)
+    wavenumber, variance = np.concatenate([wave_powers(spec, r) for r in (0, 1)], axis=1)
     order = np.argsort(wavenumber)
     wavenumber, variance = wavenumber[order], variance[order]
     # Near the longest wave, where w is infinite, bands are narrow.

@@ -97,11 +97,8 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
     DataError
         If the surface is flat, too small, or not as isotropic as the settings say.
     """
-    shortest = max(
-        LEAST_POINTS_PER_WAVE * max(used_directions(surface.spacing, settings)),
-        surface.resolution,
-        settings.short_cutoff or 0.0,
-    )
+    finest = LEAST_POINTS_PER_WAVE * max(used_directions(surface.spacing, settings))
+    shortest = max(finest, surface.resolution, settings.short_cutoff or 0.0)
     of_surface, lay = settings.texture != "along rolling", (1.0, 90.0)
     if surface.heights.ndim == 1:
         if settings.texture == "lay":
@@ -352,10 +349,8 @@ def _column_means(power, length, q_max):
     last = (power.shape[0] - 1) // 2
     step = 2.0 * np.pi / length
     wave_vector = step * np.arange(1, last + 1)
-    powers, squares = (
-        np.sum(part[1 : last + 1], axis=1) + np.sum(part[: -last - 1 : -1], axis=1)
-        for part in (power, power**2)
-    )
+    of_rows = (np.sum(part, axis=1) for part in (power, power**2))
+    powers, squares = (part[1 : last + 1] + part[: -last - 1 : -1] for part in of_rows)
     sums = _sums_by_bin(wave_vector, length, q_max)
     counts, total, places = map(sums, (None, powers, wave_vector**-2.0))
     middle = (places / counts) ** -0.5
@@ -380,8 +375,7 @@ def _inverted(wave_vector, density, estimates):
         return line_of_profile(places, monotone(values, number), wave_vector)
 
     fit = monotone(means, number)
-    generator = np.random.default_rng(0)
-    noise = generator.gamma(number, 1.0 / number, (_REPLICATES, number.size))
+    noise = np.random.default_rng(0).gamma(number, 1.0 / number, (_REPLICATES, number.size))
     replicates = [invert(fit * factors) for factors in noise]
     spread = np.std(replicates, axis=0) / np.mean(replicates, axis=0)
     return invert(means), np.maximum(spread**-2.0, 1.0)

@@ -336,8 +336,7 @@ class RarePair:
 
     def heights(self, log_tail, rms):
         """Heights of points that touch a film: the inverse of the Gaussian tail."""
-        heights = -rms * scipy.special.ndtri_exp(self.log_chosen + log_tail)
-        return heights.astype(np.float32)
+        return (-rms * scipy.special.ndtri_exp(self.log_chosen + log_tail)).astype(np.float32)
 
     def windows(self, film, touching, factor, surfaces=(), answers=()):
         """Mean weights of windows with contact and with a breakthrough."""

@@ -192,12 +192,10 @@ def longest_waves(spec: LineSpecLike) -> Pair:
 def shortest_waves(spec: LineSpecLike) -> Pair:
     """Shortest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
     # A cut through a ridge along one side, over its reach along the other.
-    waves = [
-        line.shortest_wavelength
-        * line.lay_ratio
-        / np.array(extents(line.lay_ratio, line.lay_angle))
-        for line in spec.lines
-    ]
+    waves = []
+    for line in spec.lines:
+        reach = np.array(extents(line.lay_ratio, line.lay_angle))
+        waves.append(line.shortest_wavelength * line.lay_ratio / reach)
     return tuple(np.min(waves, axis=0).tolist())
 
 

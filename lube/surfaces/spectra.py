@@ -101,10 +101,8 @@ def spectrum_moments(spec: LineSpecLike, roller: int) -> dict[str, float]:
     waves = np.arange(first_wave, first_wave + amplitudes.size)
     difference = 2.0 * np.sin(np.pi * waves / spec.points[roller]) / spec.spacing
     names = ("rms_height", "rms_slope", "rms_curvature")
-    return {
-        name: np.sqrt(0.5 * np.sum(amplitudes**2 * difference ** (2 * order)))
-        for order, name in enumerate(names)
-    }
+    roots = (np.sqrt(0.5 * np.sum(amplitudes**2 * difference ** (2 * n))) for n in (0, 1, 2))
+    return dict(zip(names, roots, strict=True))
 
 
 def pair_moments(spec: LineSpecLike) -> list[float]:

@@ -274,8 +274,7 @@ def _logarithms(spectrum, waves):
     logarithm = np.log(spectrum.density[used] / spectrum.transfer[used]) - bias
     if spectrum.isotropic:
         logarithm = logarithm - np.log(spectrum.wave_vector[used])
-    error = np.sqrt(scipy.special.polygamma(1, estimates))
-    return spectrum.wave_vector[used], logarithm, error
+    return spectrum.wave_vector[used], logarithm, np.sqrt(scipy.special.polygamma(1, estimates))
 
 
 def _basis(places, bend, blurred):

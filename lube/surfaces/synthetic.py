@@ -210,8 +210,7 @@ def draw_gaussian_line(spec: LineSpecLike, roller: int, generator: np.random.Gen
         Shape (N,), float32: heights in height steps, not rounded. Their rms is that of the
         roller in expectation only.
     """
-    points = spec.points[roller]
-    return _superposition(_spectrum(spec, roller), points, gaussian_phasors, generator)
+    return _superposition(_spectrum(spec, roller), spec.points[roller], gaussian_phasors, generator)
 
 
 def _superposition(spectrum, points, phasors, generator):

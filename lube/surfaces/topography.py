@@ -225,10 +225,8 @@ def remove_form(heights: Array, form: str) -> Array:
     order = FORMS.index(form)
     columns = heights.reshape(len(heights), -1)
     orders = (order, order if heights.ndim == 2 else 0)
-    along, across = (
-        np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, points), order)
-        for points, order in zip(columns.shape, orders, strict=True)
-    )
+    places = (np.linspace(-1.0, 1.0, points) for points in columns.shape)
+    along, across = map(np.polynomial.legendre.legvander, places, orders)
     measured = np.isfinite(columns)
     terms = [(a, b) for a in range(orders[0] + 1) for b in range(orders[1] + 1) if a + b <= order]
     first, second = np.array(terms).T

@@ -14,7 +14,7 @@ from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.responses import solve_responses
 from lube.sensitivity.runs import Model, design
 from lube.sensitivity.samples import deviations, over_run
-from lube.sensitivity.shape import WINDOW, EffectiveRatio, _ratio
+from lube.sensitivity.shape import WINDOW, _ratio, effective_ratio
 from lube.study.study import load_study
 from lube.study.uncertainty import Uncertainty, deviating_lines
 
@@ -50,7 +50,7 @@ def test_as_many_points_touch_in_both_films():
 @pytest.fixture(scope="module")
 def table():
     deviating = Deviating.of(load_study(CONFIG / "paper.yaml"))
-    return EffectiveRatio.of(deviating, RANGES, Gap("computed"), "line")
+    return effective_ratio(deviating, RANGES, Gap("computed"), "line")
 
 
 def film_of(moes_load, moes_material):
@@ -116,7 +116,7 @@ def test_where_the_oil_deforms_the_roughness_as_many_points_touch_as_under_the_f
     values = over_run(deviations(deviating.factors, unit))
     kind = {"line": "answered_lines", "surface": "answered_surfaces"}[contact_model]
     ((_, film),) = deviating.films(values, points, **{kind: spec})
-    table = EffectiveRatio.of(deviating, film, model.gap, contact_model, solved)
+    table = effective_ratio(deviating, film, model.gap, contact_model, solved)
     ratio = xr.full_like(film["lambda_ratio"], 3.0)
     found = table(ratio, film, values)
     name, *_ = responses.KINDS[contact_model]

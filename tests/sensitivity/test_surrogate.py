@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import scipy.special
 
-from lube.sensitivity.surrogate import Interpolant, Surrogate, held_out
+from lube.sensitivity.surrogate import Surrogate, held_out, interpolant
 
 RNG = np.random.default_rng(3)
 
@@ -18,16 +18,16 @@ def smooth(variables):
 
 def test_a_smooth_function_is_met_between_its_points():
     known, new = points(800), points(50)
-    found = Interpolant.of(known, smooth(known), 10.0)(new)
+    found = interpolant(known, smooth(known), 10.0)(new)
     np.testing.assert_allclose(found, smooth(new), atol=0.05)
     np.testing.assert_allclose(
-        Interpolant.of(known, smooth(known), 1e3)(known), smooth(known), atol=1e-4
+        interpolant(known, smooth(known), 1e3)(known), smooth(known), atol=1e-4
     )
 
 
 def test_a_linear_function_is_met_everywhere():
     known, new = points(20), 10.0 * points(50)
-    found = Interpolant.of(known, (known[:1] - 2.0 * known[1:2]).T)(new)
+    found = interpolant(known, (known[:1] - 2.0 * known[1:2]).T)(new)
     np.testing.assert_allclose(found, (new[:1] - 2.0 * new[1:2]).T, rtol=1e-8)
 
 
@@ -38,7 +38,7 @@ def test_a_variable_that_does_not_vary_is_left_out_and_a_repeated_one_does_no_ha
         constant = np.full((1, variables.shape[1]), 7.0)
         return np.concatenate([variables, constant, variables[:1] * 2.0])
 
-    found = Interpolant.of(more(known), smooth(known), 10.0)
+    found = interpolant(more(known), smooth(known), 10.0)
     np.testing.assert_allclose(found(more(new)), smooth(new), atol=0.2)
     new = more(new)
     elsewhere = np.concatenate([new[:3], new[3:4] + 1.0, new[4:]])
@@ -50,7 +50,7 @@ def test_equal_points_count_once():
     twice = np.concatenate([known, known], axis=1)
     values = smooth(twice)
     values[100:] += 5.0
-    found = Interpolant.of(twice, values, 1e3)(known)
+    found = interpolant(twice, values, 1e3)(known)
     np.testing.assert_allclose(found, smooth(known), atol=1e-4)
 
 
