@@ -339,18 +339,19 @@ class Study(StrictModel):
         self.line_spec.check_width(2.0 * half_width, f"{key}: the contact at {force:g} N")
         meniscus = self.inlet_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:
-            raise StudyError(
-                f"inlet_meniscus: got {with_unit(meniscus, 'm')}, need more than "
-                f"{with_unit(half_width, 'm')}, the half-width of the contact at {force:g} N"
-            )
+            needed = f"need more than {with_unit(half_width, 'm')}, the half-width of the contact"
+            came = f"inlet_meniscus: got {with_unit(meniscus, 'm')}"
+            raise StudyError(f"{came}, {needed} at {force:g} N ({key})")
 
-    def check_surfaces(self, spec: LineSpec) -> None:
+    def check_surfaces(self, spec: LineSpec, force: float) -> None:
         """Refuse lines whose surfaces the model cannot bring into contact.
 
         Parameters
         ----------
         spec : LineSpec
             The study's lines, or lines that deviate.
+        force : float
+            Largest force, N.
 
         Raises
         ------
@@ -359,7 +360,7 @@ class Study(StrictModel):
         """
         from lube.study.surface_checks import check_surfaces  # which loads scipy
 
-        width = 2.0 * self.rollers.contact_half_width(max(self.operating_grid.force))
+        width = 2.0 * self.rollers.contact_half_width(force)
         with located("contact_model: surface"):
             check_surfaces(spec, self.rollers.length, width, self.gap)
 
@@ -440,7 +441,7 @@ class Study(StrictModel):
             if "line" in self.contact_model:
                 self.line_spec.check_follows_rolling()
             if self.has_surfaces:
-                self.check_surfaces(self.line_spec)
+                self.check_surfaces(self.line_spec, max(self.operating_grid.force))
             elif self.load_sharing != "none":
                 from lube.surfaces.rare_contact import check_stands_for_surface  # loads scipy
 

@@ -290,6 +290,8 @@ class Uncertainty(StrictModel):
 _KINDS = {name: get_args(field.annotation)[0] for name, field in Uncertainty.model_fields.items()}
 CHOICES = [name for name, kind in _KINDS.items() if issubclass(kind, Choice)]
 """Factors that are choices, which cannot be measured."""
+BAND = "longest_wavelength", "shortest_wavelength"
+"""Factors that are ends of the band of wavelengths."""
 
 
 def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
@@ -382,11 +384,9 @@ def check_uncertainty(study) -> None:
         )
     if uncertain.temperature:
         _check_temperatures(study, uncertain.temperature.ends)
-    if uncertain.force:
-        lower, upper = uncertain.force.ends
-        study.check_window(min(study.operating_grid.force) * (1.0 + lower), "force.range")
-        study.check_window(max(study.operating_grid.force) * (1.0 + upper), "force.range")
-    for name in ("hurst_exponent", "longest_wavelength", "shortest_wavelength"):
+    for force in _extreme_forces(study):
+        study.check_window(force, _ranges(uncertain, "force", "young_modulus"))
+    for name in ("hurst_exponent", *BAND):
         if getattr(uncertain, name) and not all(line.hurst_exponent for line in spec.lines):
             came = "got a range for lines whose spectrum and height are measured"
             raise StudyError(f"{name}: {came}, need none")
@@ -402,6 +402,21 @@ def check_uncertainty(study) -> None:
     _check_bands(study)
 
 
+def _extreme_forces(study):
+    """Find the forces at which contact of the rollers as given is narrowest and widest."""
+    uncertain, forces = study.uncertainty, study.operating_grid.force
+    given = uncertain.force, uncertain.young_modulus
+    force, modulus = (one.ends if one else (0.0, 0.0) for one in given)
+    # Contact of softer rollers is as wide as at a force greater in proportion.
+    least, greatest = 1.0 + force[0], 1.0 + force[1]
+    return min(forces) * least / (1.0 + modulus[1]), max(forces) * greatest / (1.0 + modulus[0])
+
+
+def _ranges(uncertain, *names):
+    """Name those of some ranges that are given."""
+    return ", ".join(f"{name}.range" for name in names if getattr(uncertain, name))
+
+
 def _check_temperatures(study, ends):
     levels = study.operating_grid.temperature
     for record in study.lubricants:
@@ -415,7 +430,7 @@ def _check_temperatures(study, ends):
 def _check_bands(study):
     """Refuse bands of wavelengths that the grid of lines or surfaces cannot have."""
     uncertain, spec = study.uncertainty, study.line_spec
-    given = (uncertain.longest_wavelength, uncertain.shortest_wavelength)
+    given = (getattr(uncertain, name) for name in BAND)
     long, short = (one.ends if one else (0.0, 0.0) for one in given)
     narrow = deviating_lines(spec, {"longest_wavelength": long[0], "shortest_wavelength": short[1]})
     wide = deviating_lines(spec, {"longest_wavelength": long[1], "shortest_wavelength": short[0]})
@@ -434,4 +449,5 @@ def _check_bands(study):
     if "line" in models:
         spec.check_follows_rolling()
     if "surface" in models:
-        study.check_surfaces(wide)
+        with located(_ranges(uncertain, "force", "young_modulus", *BAND) or "contact_model"):
+            study.check_surfaces(wide, max(_extreme_forces(study)))

@@ -136,15 +136,35 @@ def test_a_range_needs_a_source(tmp_path):
             "but n-dodecane states the definition of its coefficient",
         ),
         (
-            {"uncertainty": {"force": {"range": "-99.9999 % to 0 %"} | SOURCE}},
+            {
+                "uncertainty": {
+                    "force": {"range": "-99.9999 % to 0 %"} | SOURCE,
+                    "young_modulus": None,
+                }
+            },
             "force.range: the contact at 0.0001 N is 0.105 µm wide, need at least two grid",
         ),
         (
             {
                 "inlet_meniscus": "0.22 mm",
-                "uncertainty": {"force": {"range": "+- 50 %"} | SOURCE},
+                "uncertainty": {"force": {"range": "+- 50 %"} | SOURCE, "young_modulus": None},
             },
-            "the half-width of the contact at 2400 N",
+            "the half-width of the contact at 2400 N (force.range)",
+        ),
+        (
+            {
+                "inlet_meniscus": "0.22 mm",
+                "uncertainty": {"force": None, "young_modulus": {"range": "-50 % to 0 %"} | SOURCE},
+            },
+            "the half-width of the contact at 3200 N (young_modulus.range)",
+        ),
+        (
+            {
+                "rollers": {"length": "1.215 mm"},
+                "contact_model": ["surface"],
+            },
+            "force.range, young_modulus.range, longest_wavelength.range, "
+            "shortest_wavelength.range: contact_model: surface: rollers.length: got 0.001215 m",
         ),
         ({"load_sharing": "iterated"}, "load_sharing: got iterated, need none: probabilities of"),
         (
