@@ -120,10 +120,12 @@ def contact_probability(
         one pair of rollers in a revolution of pure rolling, and
         ``surface_breakthrough_probability_pair_lower`` and ``_pair_upper``, between which this
         share lies in 95 % of cases, with the slip given; ``surface_passage_width``, over which the
-        rollers move while a contact is in the strip; and ``surface_expected_breakthroughs`` and
+        rollers move while a contact is in the strip, and ``surface_breakthrough_width``, over which
+        they move while the layer of a contact is broken; and ``surface_expected_breakthroughs`` and
         ``surface_expected_contacts``, which are less than the numbers sampled at small lambda
-        ratios, where contacts have holes. From numbers and passage: ``surface_breakthrough_rate``,
-        per hour, with ``_lower`` and ``_upper``, and ``surface_breakthrough_duration``.
+        ratios, where contacts have holes. From numbers and ``surface_breakthrough_width``:
+        ``surface_breakthrough_rate``, per hour, with ``_lower`` and ``_upper``, and
+        ``surface_breakthrough_duration``.
 
     Raises
     ------

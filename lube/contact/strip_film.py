@@ -148,17 +148,22 @@ class StripFilm:
             Of the roughness in the gap. Its curvatures are those of the surfaces as drawn: they
             are of short waves, which the oil hardly changes.
         """
-        found, spacing = self.contacts(spec, length), self.width / COLUMNS
+        found = self.contacts(spec, length)
+        summits, weights = self._summits(spec, sharp, found.density)
+        share = excursions.sharp_surface_summit_share(*summits)
+        return found.number, found.number * np.average(share, weights=weights)
+
+    def _summits(self, spec, sharp, density):
+        """Films, moments and curvatures of summits at columns, and the columns' weights."""
+        spacing = self.width / COLUMNS
         films, sharp = self.films(spacing), self.breaking_curvatures(spacing, sharp)
-        moments, weights = surface_moments(spec), found.density
+        moments = surface_moments(spec)
         if self.answers:
             both = self._of_each(summit_moments, spec, self._columns(spacing))
             moments = excursions.SurfaceMoments(*sum(both), moments.curvature)
         elif self.has_edges:  # the same everywhere
-            films, sharp, weights = films[:1], sharp[:1], weights[:1]
-        known = moments, sharp, curvature_moments(spec)
-        share = excursions.sharp_surface_summit_share(films, *known)
-        return found.number, found.number * np.average(share, weights=weights)
+            films, sharp, density = films[:1], sharp[:1], density[:1]
+        return (films, moments, sharp, curvature_moments(spec)), density
 
     def passage_width(
         self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0
@@ -172,6 +177,33 @@ class StripFilm:
         """
         _, number, appearing = self.contacts(spec, length, slide_to_roll_ratio)
         return number / appearing
+
+    def breakthrough_width(
+        self, spec: LineSpecLike, length: float, sharp: float, slide_to_roll_ratio: float = 0.0
+    ) -> float:
+        """Find how far the rollers move on average while the layer of a contact is broken, m.
+
+        With slip a layer also breaks where a summit becomes sharper while it touches, and holds
+        again where it becomes blunter. In pure rolling it is broken as long as the contact is in
+        the strip.
+
+        Parameters
+        ----------
+        spec, length, sharp
+            As in `expected`.
+        slide_to_roll_ratio : float, optional
+            Slide-to-roll ratio, by default pure rolling.
+        """
+        found = self.contacts(spec, length, slide_to_roll_ratio)
+        passage = found.number / found.appearing
+        if slide_to_roll_ratio == 0.0:
+            return passage
+        summits, weights = self._summits(spec, sharp, found.density)
+        share = excursions.sharp_surface_summit_share(*summits)
+        more = excursions.sharpening_summits(*summits, summit_motion(spec, slide_to_roll_ratio))
+        share, more = (np.average(each, weights=weights) for each in (share, more))
+        # A number of 0 in floating point tells nothing.
+        return share / (share / passage + more) if share > 0.0 else passage
 
     def common(self, spec: LineSpecLike, length: float) -> Pair:
         """Find which contacts two strips have in common, in pure rolling.
@@ -283,6 +315,39 @@ def curvature_moments(spec: LineSpecLike) -> Array | None:
         found[1:, 1:] += both * np.eye(2) + (difference - both) * np.outer(turned, turned)
     found[1:, 0] = found[0, 1:]
     return found
+
+
+def summit_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> excursions.SummitMotion:
+    """How the summits of both surfaces together change while they slide over one another.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        As in `surface_moments`.
+    slide_to_roll_ratio : float
+        Slide-to-roll ratio.
+
+    Returns
+    -------
+    SummitMotion
+        Of surfaces as drawn: curvatures are of short waves, which the oil hardly changes.
+    """
+    waves = [surface_waves(spec, roller) for roller in range(len(spec.lines))]
+    speeds = np.array(surface_speeds(1.0, slide_to_roll_ratio))
+    # Seen in motion with the mean of both, their changes are independent of what they are.
+    curved = [np.sum(power * (along**2 + across**2) ** 2) for along, across, power in waves]
+    speeds -= np.average(speeds, weights=curved)
+    change, moving, standing = 0.0, np.zeros((2, 2)), np.zeros((3, 2, 2))
+    for speed, (along, across, power) in zip(speeds, waves, strict=True):
+        slopes, mean = np.stack([along, across]), 0.5 * (along**2 + across**2)
+        moved = power * (speed * along) ** 2
+        change += np.sum(moved * mean**2)
+        moving += np.einsum("iw,jw,w->ij", slopes, slopes, moved)
+        powers = np.stack([power, power * mean, power * mean**2])
+        standing += np.einsum("iw,jw,kw->kij", slopes, slopes, powers)
+    square, mixed, gradients = standing
+    gradients -= mixed @ np.linalg.solve(square, mixed)
+    return excursions.SummitMotion(change, moving, gradients)
 
 
 @functools.lru_cache(maxsize=1)

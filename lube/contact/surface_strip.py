@@ -104,7 +104,7 @@ def surface_contact(
     fewer : int, optional
         How many times fewer surfaces are drawn than `SURFACES`, for a faster, less exact result.
     slide_to_roll_ratio : xarray.DataArray or float, optional
-        For the passage width, which also has its dimensions; by default pure rolling.
+        For both widths, which also have its dimensions; by default pure rolling.
     wanted : xarray.DataArray, optional
         At which of the films contact is sampled, by default at all. The choice does not change the
         results there.
@@ -120,8 +120,9 @@ def surface_contact(
         and ``breakthroughs`` in the strip, and the part of its area where the layer is broken,
         ``breakdown_ratio``, each with ``_lower`` and ``_upper``; the numbers that theory expects,
         ``expected_contacts`` and ``expected_breakthroughs``; the distance that the
-        rollers move while a contact is in the strip, ``passage_width`` (m), and the scatter of a
-        pair's share of breakthrough in a revolution of pure rolling, ``pair_deviation``, as
+        rollers move while a contact is in the strip, ``passage_width`` (m), and while the layer of
+        a contact is broken, ``breakthrough_width`` (m); and the scatter of a pair's share of
+        breakthrough in a revolution of pure rolling, ``pair_deviation``, as
         `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film
         is not known or not wanted.
 
@@ -155,13 +156,18 @@ def surface_contact(
     looked_at = set(np.array(known, int)[wanted])
     points = thickness.copy(data=np.arange(thickness.size).reshape(shape))
 
-    def passage_width(slip, point):
-        if point not in looked_at:
-            return np.nan
-        return strips[point].passage_width(pair.spec, pair.length, slip)
+    limits = dict(zip(known, sharp, strict=True))
 
-    widths = np.vectorize(passage_width, otypes=[float])
-    return found.assign(passage_width=xr.apply_ufunc(widths, slide_to_roll_ratio, points))
+    def both_widths(slip, point):
+        if point not in looked_at:
+            return np.nan, np.nan
+        strip, choices = strips[point], (pair.spec, pair.length)
+        of_broken = strip.breakthrough_width(*choices, limits[point], slip)
+        return strip.passage_width(*choices, slip), of_broken
+
+    both = np.vectorize(both_widths, otypes=[float, float])
+    widths = xr.apply_ufunc(both, slide_to_roll_ratio, points, output_core_dims=[(), ()])
+    return found.assign(dict(zip(("passage_width", "breakthrough_width"), widths, strict=True)))
 
 
 def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:

@@ -9,8 +9,9 @@ S. O. Rice, Mathematical analysis of random noise, Bell Syst. Tech. J. 23 (1944)
 24 (1945) 46-156.
 """
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -68,6 +69,25 @@ class PassingContacts(NamedTuple):
     density: Array
     number: float
     appearing: float
+
+
+class SummitMotion(NamedTuple):
+    """How summits change while two surfaces slide over one another, per rolled distance.
+
+    Attributes
+    ----------
+    change : float
+        Mean square change of the mean curvature at a fixed place, 1/m^4.
+    slopes : numpy.ndarray, shape (2, 2)
+        Mean products of the changes of the slopes along rolling and along the rollers, 1/m^2.
+    gradients : numpy.ndarray, shape (2, 2)
+        Mean products of the changes of the mean curvature along rolling and along the rollers, at
+        places without slope, 1/m^4.
+    """
+
+    change: float
+    slopes: Array
+    gradients: Array
 
 
 def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
@@ -346,11 +366,95 @@ def sharp_surface_summit_share(
     >>> sharp_surface_summit_share(np.array([5.0]), moments, 10.0, curvatures).round(3)
     array([0.866])
     """
+    summits = _every_summit(level, moments, curvatures)
+    return summits.sharper(curvature) / summits.sharper(0.0)
+
+
+def sharpening_summits(
+    level: Array,
+    moments: SurfaceMoments,
+    curvature: Values,
+    curvatures: Array | None,
+    motion: SummitMotion,
+) -> Array:
+    r"""How often the summits above a level become sharper than a given curvature.
+
+    While two surfaces slide over one another, the mean curvature of a summit of their sum changes:
+    at a fixed place by :math:`\dot\kappa`, and because the summit moves. It follows the place where
+    both slopes are zero, with the velocity :math:`-H^{-1} \dot{\vec s}`, by the changes
+    :math:`\dot{\vec s}` of the slopes and the matrix H of second derivatives. With the covariances
+    C of these changes, and G of the gradient of :math:`\kappa` at a summit, the change has the
+    mean square
+
+    .. math:: \langle \dot\kappa^2 \rangle + \mathrm{tr}(H^{-1} C H^{-1} G)
+
+    and is taken as normal: summits of the curvature :math:`\kappa` become sharper at
+    :math:`(2 \pi)^{-1/2}` times its square root. This is some 4 % too much, since velocities are
+    normal, too.
+
+    Parameters
+    ----------
+    level, moments, curvature, curvatures
+        As in `sharp_surface_summit_share`.
+    motion : SummitMotion
+        How the curvature changes.
+
+    Returns
+    -------
+    numpy.ndarray
+        Per rolled distance, over the number of all summits above each level, 1/m.
+
+    References
+    ----------
+    S. O. Rice, as above, of the curvature of summits in place of heights.
+
+    Examples
+    --------
+    Surfaces that do not slide over one another keep their summits:
+
+    >>> moments = SurfaceMoments(1.0, along=2.0, across=2.0, mixed=0.0, curvature=100.0)
+    >>> motion = SummitMotion(0.0, np.zeros((2, 2)), 300.0 * np.eye(2))
+    >>> sharpening_summits(np.array([5.0]), moments, 10.0, None, motion)
+    array([0.])
+    """
+    change, slopes, gradients = motion
+    every = _every_summit(level, moments, curvatures).sharper(0.0)
+    if curvatures is None:
+        curvatures = 0.25 * moments.curvature * np.diag([1.0, 0.5, 0.5])
+
+    def speed(kappa, difference, twist):
+        determinant = _determinant(kappa, difference, twist)
+        # The inverse of H times its determinant; both signs are alike.
+        rows = (kappa - difference, -twist), (-twist, kappa + difference)
+        square = change * determinant**2
+        for i, j, k, m in itertools.product(range(2), repeat=4):
+            square = square + rows[i][j] * slopes[j, k] * rows[k][m] * gradients[m, i]
+        return np.where(determinant > 0.0, np.sqrt(np.maximum(square, 0.0)), 0.0)
+
+    summits = _summits(level, moments, _weight(moments, curvatures, speed), _FEW)
+    return summits.at(curvature) / every / math.sqrt(2.0 * math.pi)
+
+
+def _every_summit(level, moments, curvatures):
+    """Summits of a surface above levels, each of which counts."""
+    if curvatures is not None:
+        return _summits(level, moments, _weight(moments, curvatures, _determinant), _FEW)
+    spread = 0.25 * moments.curvature
+
+    def determinant(kappa, _):
+        return kappa**2 + spread * np.expm1(-(kappa**2) / spread)
+
+    return _summits(level, moments, determinant, _MANY)
+
+
+def _determinant(kappa, difference, twist):
+    return np.maximum(kappa**2 - difference**2 - twist**2, 0.0)
+
+
+def _weight(moments, curvatures, of_curvatures):
+    """Mean of a function of a summit's mean curvature, d and t, by the first and its mean."""
     height, along, across, mixed, square = moments
     spread, slopes = 0.25 * square, 0.5 * (along + across)
-    known = level, (height, slopes, spread), curvature
-    if curvatures is None:
-        return _share(*known, lambda kappa, _: kappa**2 + spread * np.expm1(-(kappa**2) / spread))
     # The two others at a given height, then at a given mean curvature, too: normal, with means that
     # follow both, and with what is left of their mean squares and product.
     by_height = np.array(np.broadcast_arrays(slopes, 0.5 * (along - across), mixed))
@@ -368,20 +472,39 @@ def sharp_surface_summit_share(
         twist = by_height[2] / by_height[0] * mean + by_curvature[1] * (kappa - mean)
         total = 0.0
         for one, chance in zip(_NORMAL, _NORMAL_WEIGHTS, strict=True):
-            rest = kappa**2 - (difference + first * one) ** 2
+            differs = difference + first * one
             for other, times in zip(_NORMAL, chance * _NORMAL_WEIGHTS, strict=True):
                 twisted = twist + (shared * one + second * other)
-                total = total + times * np.maximum(rest - twisted**2, 0.0)
+                total = total + times * of_curvatures(kappa, differs, twisted)
         return total
 
-    return _share(*known, weight, _FEW)
+    return weight
 
 
-def _share(level, moments, least_curvature, weight, nodes=_MANY):
+class _Summits(NamedTuple):
+    """Summits above levels: those sharper than a curvature, and those of one, per curvature."""
+
+    sharper: Callable[[Values], Array]
+    at: Callable[[Values], Array]
+
+
+def _summits(level, moments, weight, nodes):
+    """Summits of a surface, which have a weight as in `_share`."""
+    slopes = 0.5 * (moments.along + moments.across)
+    return _above(level, (moments.height, slopes, 0.25 * moments.curvature), weight, nodes)
+
+
+def _share(level, moments, least_curvature, weight):
     """Fraction of the summits above levels that are sharper than a curvature.
 
     They have a weight that depends on their curvature, and on its mean at their height.
     """
+    summits = _above(level, moments, weight, _MANY)
+    return summits.sharper(least_curvature) / summits.sharper(0.0)
+
+
+def _above(level, moments, weight, nodes):
+    """Summits above levels."""
     m0, covariance, variance = (_apart(each) for each in moments)
     above, above_weights, curvatures, curvature_weights = _NODES[nodes]
     # Heights are integrated by Gauss-Laguerre quadrature, with z = h + m0 t / h.
@@ -392,15 +515,21 @@ def _share(level, moments, least_curvature, weight, nodes=_MANY):
     mean = covariance / m0 * height
     deviation = np.sqrt(variance - covariance**2 / m0)
 
-    def summits(least):
+    def at_heights(kappa):
+        normal = np.exp(-0.5 * ((kappa - mean[..., None]) / deviation[..., None]) ** 2)
+        return weight(kappa, mean[..., None]) * normal
+
+    def sharper(least):
         low = np.maximum(_apart(least), mean - _WIDE * deviation)
         half = 0.5 * np.maximum(mean + _WIDE * deviation - low, 0.0)
         kappa = (low + half)[..., None] + half[..., None] * curvatures
-        normal = np.exp(-0.5 * ((kappa - mean[..., None]) / deviation[..., None]) ** 2)
-        inner = half * np.sum(curvature_weights * weight(kappa, mean[..., None]) * normal, axis=-1)
+        inner = half * np.sum(curvature_weights * at_heights(kappa), axis=-1)
         return np.sum(heights * inner, axis=-1)
 
-    return summits(least_curvature) / summits(0.0)
+    def at(kappa):
+        return np.sum(heights * at_heights(_apart(kappa, 2))[..., 0], axis=-1)
+
+    return _Summits(sharper, at)
 
 
 def _apart(values, axes=1):

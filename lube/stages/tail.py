@@ -126,7 +126,8 @@ def _on_surfaces(study, speed, areal):
 def surface_rates(surfaces: xr.Dataset, speed: xr.DataArray) -> dict[str, xr.DataArray]:
     """Compute the rate of breakthroughs on surfaces, and their mean duration.
 
-    A contact is counted once, from where it appears in the strip to where it disappears.
+    A breakthrough is counted once, from where the layer of a contact breaks to where it holds
+    again, or the contact disappears.
 
     Parameters
     ----------
@@ -141,10 +142,10 @@ def surface_rates(surfaces: xr.Dataset, speed: xr.DataArray) -> dict[str, xr.Dat
         ``breakthrough_rate`` (1/s) with ``_lower`` and ``_upper``, and ``breakthrough_duration``
         (s).
     """
-    passage = surfaces["passage_width"]
-    rates = (surfaces[f"breakthroughs{end}"] * speed / passage for end in LIMITS)
+    width = surfaces["breakthrough_width"]
+    rates = (surfaces[f"breakthroughs{end}"] * speed / width for end in LIMITS)
     found = values_with_limits("breakthrough_rate", rates)
-    return found | {"breakthrough_duration": passage / speed}
+    return found | {"breakthrough_duration": width / speed}
 
 
 def _by_groups(found, passages, revolution):

@@ -67,7 +67,8 @@ def test_contact_of_the_surface_is_that_of_the_areal_stage(rollers, oil, busy):
     film = busy.film.isel(force=[-1], speed=[-1], temperature=[-1])
     areas = areal.make(busy.study, {"film": film})
     expected = areas.isel(lubricant=0, slide_to_roll_ratio=0)
-    expected["passage_width"] = 1e6 * expected["passage_width"]
+    for name in ("passage_width", "breakthrough_width"):
+        expected[name] = 1e6 * expected[name]
     for name, values in expected.drop_vars("length").items():
         np.testing.assert_array_equal(found[f"surface_{name}"], values)
     assert found["surface_passage_width"].attrs["units"] == "um"

@@ -199,6 +199,40 @@ def test_contacts_appear_with_slip_as_often_as_on_surfaces_in_motion(make_spec, 
     compare_in_motion(spec, surface, Unchanged(surface).heights, film, slip)
 
 
+@pytest.mark.parametrize("own", [{}, {"lay_ratio": 2.0, "lay_angle": "40 deg"}])
+def test_layers_are_broken_with_slip_as_long_as_on_surfaces_in_motion(make_spec, own):
+    """Summits become sharper and blunter where the layer of most contacts holds."""
+    slip, spec = 0.5, make_spec(50_000, second_own=own, **FEW)
+    surface = rough_surface(spec, contact=(4e-5, 4e-5), waves=6)
+    moments = surface_moments(spec)
+    film, sharp = 2.5 * np.sqrt(moments.height), 1.5 * np.sqrt(moments.curvature)
+    columns = 2e-4 / surface.spacing[1]
+    strip = StripFilm.flat(film, 0.5 * round(columns) * surface.spacing[1])
+    phase = 2j * np.pi / surface.points[1] * np.arange(surface.coarse[1] // 2 + 1)
+    found = []
+    for seed in range(12):
+        generator = np.random.default_rng(seed)
+        both = surface.of_each(surface.draw(generator)[2], generator)
+        broken, number = [], 0
+        for step in range(STEPS):
+            moved = zip(both, surface_speeds(1.0, slip), strict=True)
+            waves = sum(each * np.exp(-step * speed * phase) for each, speed in moved)
+            curved = field(waves * surface.curvatures, surface.points)[:, : round(columns)]
+            heights = field(waves, surface.points)[:, : round(columns)]
+            labels, count = ndimage.label(heights * spec.height_step > film)
+            tops = ndimage.maximum_position(heights, labels, np.arange(1, count + 1))
+            breaks = [spec.height_step * curved[top] > sharp for top in tops]
+            broken.append(np.array([False, *breaks])[labels])
+            number += sum(breaks)
+        labels, count = ndimage.label(broken, np.ones((3, 3, 3)))
+        found.append([number / STEPS, count - np.unique(labels[0])[1:].size])
+    number, begun = np.mean(found, axis=0)
+    way = (STEPS - 1) * surface.spacing[1]
+    expected = strip.breakthrough_width(spec, surface.sides[0], sharp, slip)
+    assert number * way / begun == pytest.approx(expected, rel=0.2)
+    assert expected < 0.65 * strip.passage_width(spec, surface.sides[0], slip)
+
+
 @pytest.mark.parametrize(
     ("film_shape", "slip", "lay"),
     [

@@ -6,12 +6,14 @@ import scipy.integrate
 import scipy.stats
 
 from lube.physics.excursions import (
+    SummitMotion,
     SurfaceMoments,
     breaking_curvature,
     crossing_rate,
     expected_contacts,
     sharp_summit_share,
     sharp_surface_summit_share,
+    sharpening_summits,
 )
 
 MOMENTS = 2.0, 3.0, 40.0
@@ -107,14 +109,44 @@ def test_sharp_summits_of_a_surface_with_a_lay_are_those_of_drawn_critical_point
     assert 0.1 < expected < 0.9
 
 
+def test_summits_become_sharper_as_those_of_drawn_critical_points_do():
+    """Their change of curvature is drawn, too: at a fixed place, and as they move."""
+    m2, cross, limit = SURFACE.along, SURFACE.curvature / 8.0, 3.0
+    hessian = np.array([[3.0 * cross, cross, 0.0], [cross, 3.0 * cross, 0.0], [0.0, 0.0, cross]])
+    z, xx, yy, xy = drawn_points(SURFACE.height, [m2, m2, 0.0], hessian)
+    determinant, curvature = xx * yy - xy**2, -(xx + yy) / 2.0
+    motion = SummitMotion(
+        7.0, np.array([[0.9, 0.3], [0.3, 0.5]]), np.array([[8.0, 1.0], [1.0, 5.0]])
+    )
+    summit = (determinant > 0.0) & (xx < 0.0) & (z > 2.0)
+    near = summit & (abs(curvature - limit) < 0.1)
+    # The velocity of a summit: minus the inverse of the second derivatives, times the changes.
+    rng = np.random.default_rng(5)
+    slopes, gradients = (
+        rng.multivariate_normal([0.0, 0.0], each, near.sum()).T for each in motion[1:]
+    )
+    xx, yy, xy = (each[near] for each in (xx, yy, xy))
+    velocity = np.array([xy * slopes[1] - yy * slopes[0], xy * slopes[0] - xx * slopes[1]])
+    change = determinant[near] * np.sqrt(motion.change) * rng.standard_normal(near.sum())
+    change += np.sum(velocity * gradients, axis=0)
+    expected = np.sum(np.maximum(change, 0.0)) / 0.2 / determinant[summit].sum()
+    found = sharpening_summits(np.array([2.0]), SURFACE, limit, None, motion)
+    assert found == pytest.approx(expected, rel=0.06)
+
+
 def of_drawn_points(height, slopes, hessian, curvature):
-    """Heights and second derivatives drawn at points without slope, weighed by |det H| (Rice)."""
-    covariance = np.empty((4, 4))
-    covariance[0, 0], covariance[1:, 1:] = height, hessian
-    covariance[0, 1:] = covariance[1:, 0] = -np.asarray(slopes)
-    rng = np.random.default_rng(4)
-    z, xx, yy, xy = rng.multivariate_normal(np.zeros(4), covariance, 2_000_000).T
+    """Points without slope, weighed by |det H| (Rice)."""
+    z, xx, yy, xy = drawn_points(height, slopes, hessian)
     weight = xx * yy - xy**2
     maximum = (weight > 0.0) & (xx < 0.0) & (z > 2.0)
     sharp = maximum & (-(xx + yy) / 2.0 > curvature)
     return weight[sharp].sum() / weight[maximum].sum()
+
+
+def drawn_points(height, slopes, hessian):
+    """Heights and second derivatives drawn at points without slope."""
+    covariance = np.empty((4, 4))
+    covariance[0, 0], covariance[1:, 1:] = height, hessian
+    covariance[0, 1:] = covariance[1:, 0] = -np.asarray(slopes)
+    rng = np.random.default_rng(4)
+    return rng.multivariate_normal(np.zeros(4), covariance, 2_000_000).T

@@ -49,10 +49,13 @@ def test_results_have_the_dimensions_of_the_contact_model_and_do_not_depend_on_s
     for name, array in contacts.data_vars.items():
         if name != "length":
             assert array.dims == CONTACT_DIMS
-            if name != "passage_width":
+            if not name.endswith("_width"):
                 assert np.all(array == array.isel(slide_to_roll_ratio=0))
     width = contacts["passage_width"]
     assert np.all(width.min("slide_to_roll_ratio") < width.sel(slide_to_roll_ratio=0.0))
+    shorter = contacts["breakthrough_width"] / width
+    assert np.all(shorter.sel(slide_to_roll_ratio=0.0) == 1.0)
+    assert np.all(shorter <= 1.0) and shorter.min() < 0.9
 
 
 def test_a_surface_touches_more_often_than_its_line_and_the_longer_the_more(
