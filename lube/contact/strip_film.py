@@ -345,8 +345,10 @@ def summit_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> excursions.
         moving += np.einsum("iw,jw,w->ij", slopes, slopes, moved)
         powers = np.stack([power, power * mean, power * mean**2])
         standing += np.einsum("iw,jw,kw->kij", slopes, slopes, powers)
-    square, mixed, gradients = standing
-    gradients -= mixed @ np.linalg.solve(square, mixed)
+    (first, second), mixed, gradients = standing
+    inverse = np.array([[second[1], -first[1]], [-first[1], first[0]]])
+    inverse /= first[0] * second[1] - first[1] ** 2
+    gradients -= np.einsum("ij,jk,km->im", mixed, inverse, mixed)
     return excursions.SummitMotion(change, moving, gradients)
 
 
