@@ -427,8 +427,7 @@ def interval_bars(
     """
     seen = (mean > 0.0) | (axes.get_yscale() == "linear")
     bars = np.where(seen, [mean - lower, upper - mean], 0.0)
-    points = np.where(seen, mean, np.nan)
-    axes.errorbar(x, points, yerr=bars, capsize=2, elinewidth=1.0, **style)
+    axes.errorbar(x, np.where(seen, mean, np.nan), yerr=bars, capsize=2, elinewidth=1.0, **style)
     limited = ~seen & (np.asarray(upper) > 0.0)  # the upper limit may underflow to 0 as well
     at, limits = np.asarray(x)[limited], np.asarray(upper)[limited]
     arrows = {"uplims": True, "linestyle": "none", "capsize": 2.5, "elinewidth": 1.0}

@@ -65,8 +65,7 @@ class Figure:
     @property
     def chapter(self) -> str:
         """Chapter of the report, from a tag such as ``chapter-oil-and-film``."""
-        words = [*self._tagged("chapter-"), FURTHER][0]
-        return words.replace("-", " ").capitalize()
+        return [*self._tagged("chapter-"), FURTHER][0].replace("-", " ").capitalize()
 
     def fits(self, study: Study) -> bool:
         """Whether a study has what the figure compares.

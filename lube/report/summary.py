@@ -129,7 +129,6 @@ def _film(film, first, shortest):
     half = film["contact_half_width"]
     width = [2.0 * half.min().item(), 2.0 * half.max().item()]
     invalid = ~film["in_validity_range"].astype(bool)
-    outside = invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict()
     starved = film.sel(first).get("starvation_factor")
     heating = 1.0 - film["inlet_shear_heating_factor"].min().item()
     return {
@@ -143,7 +142,7 @@ def _film(film, first, shortest):
             if (points := int((film["regime"] == flag).sum()))
         },
         "points": film["regime"].size,
-        "outside": outside,
+        "outside": invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict(),
         "heating": heating if math.isfinite(heating) else None,
         "starving": 1.0 - starved.min().item() if starved is not None else None,
     }
@@ -163,8 +162,7 @@ def _contact(contact):
     }
     if found["touched"]:
         found["greatest"] = _probability(contact.isel(mean.argmax(mean.dims)))
-        least = mean.where(seen, np.inf)
-        found["least"] = _probability(contact.isel(least.argmin(mean.dims)))
+        found["least"] = _probability(contact.isel(mean.where(seen).argmin(mean.dims)))
     return found
 
 

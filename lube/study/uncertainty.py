@@ -225,47 +225,47 @@ def spoken(name: str) -> str:
     return words.replace("hurst", "Hurst").replace("young", "Young's")
 
 
-def _of(group):
-    """Say to which group a field belongs."""
-    return Field(None, json_schema_extra={"group": group})
+def _of(group, **unit):
+    """Say to which group a field belongs, and the unit of the study's value if it is a quantity."""
+    return Field(None, json_schema_extra={"group": group, **unit})
 
 
 class Uncertainty(StrictModel):
     """Quantities and choices of the model that a study does not know exactly."""
 
-    viscosity: Relative | None = _of("oil")
+    viscosity: Relative | None = _of("oil", unit="m^2/s")
     """viscosity of the oils"""
-    pressure_viscosity_coefficient: Relative | None = _of("oil")
+    pressure_viscosity_coefficient: Relative | None = _of("oil", unit="1/Pa")
     """pressure-viscosity coefficient of the oils"""
     pressure_viscosity_definition: OfDefinition | None = _of("oil")
     """definition of the coefficient where its source states none; a secant is to 200 MPa"""
-    temperature: OfTemperature | None = _of("conditions")
+    temperature: OfTemperature | None = _of("conditions", unit="degC")
     """temperature of the oil at the inlet"""
-    force: Relative | None = _of("conditions")
+    force: Relative | None = _of("conditions", unit="N")
     """normal force"""
-    speed: Relative | None = _of("conditions")
+    speed: Relative | None = _of("conditions", unit="rpm")
     """speed of both rollers"""
-    young_modulus: Relative | None = _of("conditions")
+    young_modulus: Relative | None = _of("conditions", unit="Pa")
     """Young's modulus of both rollers"""
-    rms_roughness: Relative | None = _of("surface")
+    rms_roughness: Relative | None = _of("surface", unit="m")
     """rms height of the roughness of both rollers alike"""
-    first_rms_roughness: Relative | None = _of("surface")
+    first_rms_roughness: Relative | None = _of("surface", unit="m")
     """rms height of the first roller's roughness"""
-    second_rms_roughness: Relative | None = _of("surface")
+    second_rms_roughness: Relative | None = _of("surface", unit="m")
     """rms height of the second roller's roughness"""
-    hurst_exponent: OfExponent | None = _of("surface")
+    hurst_exponent: OfExponent | None = _of("surface", unit="")
     """Hurst exponent of both rollers"""
-    longest_wavelength: Relative | None = _of("surface")
+    longest_wavelength: Relative | None = _of("surface", unit="m")
     """longest wavelength of both rollers' roughness"""
-    shortest_wavelength: Relative | None = _of("surface")
+    shortest_wavelength: Relative | None = _of("surface", unit="m")
     """shortest wavelength of both rollers' roughness"""
-    skewness: OfSkewness | None = _of("surface")
+    skewness: OfSkewness | None = _of("surface", unit="")
     """skewness of the heights of both rollers"""
-    kurtosis: OfKurtosis | None = _of("surface")
+    kurtosis: OfKurtosis | None = _of("surface", unit="")
     """kurtosis of the heights of both rollers; at least that of lognormal heights as skewed"""
-    critical_thickness: Relative | None = _of("layer")
+    critical_thickness: Relative | None = _of("layer", unit="m")
     """critical thickness of the boundary layer"""
-    shear_strength: Relative | None = _of("layer")
+    shear_strength: Relative | None = _of("layer", unit="Pa")
     """limiting shear stress of the boundary layer"""
     film_formula: OfFormula | None = _of("film")
     """film formula, of which the study takes its first"""
@@ -277,7 +277,7 @@ class Uncertainty(StrictModel):
     """deformation of the roughness"""
     contact_model: OfContact | None = _of("contact model")
     """contact of the line, or of the surface that it stands for"""
-    resistivity: Relative | None = _of("electrical")
+    resistivity: Relative | None = _of("electrical", unit="ohm*m")
     """resistivity of the rollers' material, on which resistances depend, but no probability"""
 
     def factors(self) -> list[Factor]:
@@ -290,6 +290,9 @@ class Uncertainty(StrictModel):
 _KINDS = {name: get_args(field.annotation)[0] for name, field in Uncertainty.model_fields.items()}
 CHOICES = [name for name, kind in _KINDS.items() if issubclass(kind, Choice)]
 """Factors that are choices, which cannot be measured."""
+_EXTRAS = {name: field.json_schema_extra for name, field in Uncertainty.model_fields.items()}
+UNITS = {name: extra["unit"] for name, extra in _EXTRAS.items() if "unit" in extra}
+"""Unit of the study's value of each quantity, empty for a pure number."""
 
 
 def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
@@ -383,9 +386,8 @@ def check_uncertainty(study) -> None:
     if uncertain.temperature:
         _check_temperatures(study, uncertain.temperature.ends)
     if uncertain.force:
-        lower, upper = uncertain.force.ends
-        study.check_window(min(study.operating_grid.force) * (1.0 + lower), "force.range")
-        study.check_window(max(study.operating_grid.force) * (1.0 + upper), "force.range")
+        for end, of_levels in zip(uncertain.force.ends, (min, max), strict=True):
+            study.check_window(of_levels(study.operating_grid.force) * (1.0 + end), "force.range")
     for name in ("hurst_exponent", "longest_wavelength", "shortest_wavelength"):
         if getattr(uncertain, name) and not all(line.hurst_exponent for line in spec.lines):
             came = "got a range for lines whose spectrum and height are measured"
