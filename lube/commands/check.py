@@ -12,9 +12,10 @@ from lube.errors import LubeError, StudyError, located
 from lube.grid.plausibility import overview, remarks
 from lube.pipeline.command_line import changes_of, study_of_command
 from lube.pipeline.study_files import StudyFiles
-from lube.report.pages import count
+from lube.report.pages import count, render
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
+from lube.study.resolve import merged
 from lube.study.text_files import read_yaml
 from lube.study.uncertainty import check_uncertainty, spoken
 from lube.types import File
@@ -49,10 +50,6 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     counts = {name: len(levels) for name, levels in study.operating_grid}
     counts["lubricant"] = len(study.lubricants)
     points = math.prod(counts.values())
-    factors = [count(number, spoken(name)) for name, number in counts.items() if number > 1]
-    formulas, realisations = len(study.film_formulas), study.realisations
-    more = count(formulas, "film formula"), count(realisations, "realisation")
-    runs = points * formulas * realisations
     records, refused = _records(study)
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
@@ -60,55 +57,40 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     levels = grid.force, grid.speed, study.film_formulas[:1]
     film = film_table(oil, study.rough_rollers, *levels, slide_to_roll_ratio=study.slips, **model)
     question = film, study.line_spec, study.rough_rollers
-    notes = [*remarks(*question), *_taken_over_authors(path, study, arguments["changes"])]
-    if study.has("sensitivity"):
-        try:
-            with located("no sensitivity study is possible: uncertainty"):
-                check_uncertainty(study)
-        except LubeError as error:
-            notes.append(str(error))
-        notes += _taken_over_ranges(path, study, arguments["changes"])
-    lines = {
-        "study": f"{study.name}: valid{', see the remarks below' if notes else ''}",
-        "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),
-        "band": study.band,
-        "contact runs": (
-            " × ".join([f"{runs:,} = {points:,}", *more])
-            if study.has("contact")
-            else "none: no line stands for these surfaces"
-        ),
-        **overview(*question),
-        "records": records,
-        "results": folder,
-        "expected run": _expected_run(study, points),
-        "last run": _last_run(folder),
-    }
-    lines = [f"{name:18}{text}" for name, text in lines.items()]
-    return [*lines, *(f"Remark: {note}" for note in notes)], refused
+    summary = render(
+        "check.txt",
+        study=study,
+        points=points,
+        factors=[count(number, spoken(name)) for name, number in counts.items() if number > 1],
+        films=overview(*question),
+        records=records,
+        folder=folder,
+        expected_run=_expected_run(study, points),
+        last_run=_last_run(folder),
+        notes=[*remarks(*question), *_own_remarks(path, study, arguments["changes"])],
+    )
+    return summary.splitlines(), refused
 
 
-def _taken_over_authors(path, study, changes):
-    """Say whose names are those of the study that this one is based on."""
-    base, own = _base_and_own(path, changes, "about")
-    if base and "creators" not in own and study.about.creators:
+def _own_remarks(path, study, changes):
+    """Say what is that of the study that this one is based on, and which ranges it cannot have."""
+    content = read_yaml(path, StudyError)
+    base, own = content.get("based_on"), merged(content, changes)
+    if base and study.about.creators and "creators" not in (own.get("about") or ()):
         names = "; ".join(one.name for one in study.about.creators)
         yield f"about.creators: {base} names {names}; put in your own"
-
-
-def _taken_over_ranges(path, study, changes):
-    """Say which ranges are those of the study that this one is based on."""
-    base, own = _base_and_own(path, changes, "uncertainty")
+    if not study.has("sensitivity"):
+        return
+    try:
+        with located("no sensitivity study is possible: uncertainty"):
+            check_uncertainty(study)
+    except LubeError as error:
+        yield str(error)
+    own = own.get("uncertainty") or ()
     names = [spoken(one.name) for one in study.uncertainty.factors() if one.name not in own]
     if base and names:
         given = f"the ranges and choices of {', '.join(names)}"
         yield f"uncertainty: {base} gives {given}; replace those that are not yours"
-
-
-def _base_and_own(path, changes, section):
-    """Return the study that a file is based on, if any, and its own keys of a section."""
-    content = read_yaml(path, StudyError)
-    own = {*(content.get(section) or ()), *((changes or {}).get(section) or ())}
-    return content.get("based_on"), own
 
 
 def _expected_run(study, points):

@@ -64,17 +64,12 @@ def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None)
         changes = ["–" if np.isnan(each) else f"{rounded(each):g}" for each in effects]
         given, source = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
         rows.append((spoken(name), taken[name], given, escaped(source), *changes))
-    if study.resistivity_range:  # no factor of the probability
-        given = study.uncertainty.resistivity
-        cells = "resistivity", taken["resistivity"], given.in_words, escaped(given.source)
-        rows.append((*cells, *["–"] * shown.sizes["point"]))
     ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
-    band = (f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True))
-    rows.append(("probability, 5 to 95 % of the samples", "", "", "", *band))
-    table = markdown_table((*_HEAD, *conditions), rows)
-    gains, explained = [*_gains(shown, factors, conditions)], _explained(records)
-    said = {"left": LEFT, "gains": gains, "explained": explained, "records": records}
-    return render("sensitivity.md", table=table, **said)
+    bands = [f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True)]
+    said = {"table": markdown_table((*_HEAD, *conditions), rows), "taken": taken, "bands": bands}
+    said |= {"left": LEFT, "gains": [*_gains(shown, factors, conditions)]}
+    said |= {"records": records, "explained": _explained(records)}
+    return render("sensitivity.md", study=study, **said)
 
 
 def values_taken(study: Study) -> dict[str, str]:
