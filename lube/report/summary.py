@@ -15,23 +15,11 @@ from lube.schema import LIMITS, MEAN_LIMITS, REGIMES, values_with_limits
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
 from lube.study.study import Study
-from lube.units import with_unit
 
 _FREQUENT, _RARE = 0.1, 0.001
 """Shares of time above and below which contact is called frequent and rare."""
-_AGREEMENT = (
-    "bias rms_difference overlap_share compared_records pairs origin "
-    "overlap_share_expected_lower overlap_share_expected_upper"
-).split()
-"""Measures of agreement between simulation and rig that the summary states."""
-_VARIABLES = {
-    "force": ("normal force", "N"),
-    "speed": ("rotation speed", "rpm"),
-    "temperature": ("temperature", "degC"),
-    "slide_to_roll_ratio": ("slide-to-roll ratio", ""),
-    "lubricant": ("lubricant", None),
-}
-"""Operating variables in words, with their units."""
+_VARIABLES = "force speed temperature slide_to_roll_ratio lubricant".split()
+"""Operating variables that the summary states."""
 
 
 def facts(study: Study, lubricant: xr.Dataset) -> str:
@@ -180,14 +168,8 @@ def _probability(here):
 def _trends(contact):
     """Mean probability at each level of the operating variables that have several."""
     mean = contact["breakthrough_probability_mean"]
-    return {
-        words: {
-            level if unit is None else with_unit(float(f"{level:.3g}"), unit): share
-            for level, share in mean.mean(set(mean.dims) - {name}).to_series().items()
-        }
-        for name, (words, unit) in _VARIABLES.items()
-        if mean.sizes[name] > 1
-    }
+    several = [name for name in _VARIABLES if mean.sizes[name] > 1]
+    return {name: mean.mean(set(mean.dims) - {name}).to_series().to_dict() for name in several}
 
 
 def _spread(film, contact, first):
@@ -259,15 +241,13 @@ def _largest_excess(films):
 
 def _compared(comparison, gauge, first):
     """Agreement between simulation and rig, and the films gauged, for each contact model."""
-    of_models = "contact_model" in comparison.dims
     rows = []
     for model in by_contact_model(comparison)["contact_model"].values:
         chosen = first | {"contact_model": model}
         at = chosen | {"threshold": comparison["comparison_threshold"].item()}
-        row = {name: _at(comparison[name], at).item() for name in _AGREEMENT}
-        row["simulation"] = f"the simulation{f' of {model}s' if of_models else ''}"
-        row["gauged"] = _gauged(_at(gauge, chosen)) if gauge else None
-        rows.append(row)
+        values = {name: one for name, one in _at(comparison, at).variables.items() if one.ndim == 0}
+        gauged = _gauged(_at(gauge, chosen)) if gauge else None
+        rows.append({name: one.item() for name, one in values.items()} | {"gauged": gauged})
     return rows
 
 
