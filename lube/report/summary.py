@@ -104,10 +104,8 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
             for point in study.trace_points
             for model, each in contacts.items()
         ],
-        notes={
-            "Records that were refused, and are in no result": _lines(results, "refused"),
-            "Remarks on records": _lines(results, "remarks"),
-        },
+        refused=_lines(results, "refused"),
+        remarks=_lines(results, "remarks"),
     )
 
 
@@ -149,20 +147,14 @@ def _contact(contact):
         "unseen": upper.where(~seen).max().item(),
     }
     if found["touched"]:
-        found["greatest"] = _probability(contact.isel(mean.argmax(mean.dims)))
-        found["least"] = _probability(contact.isel(mean.where(seen).argmin(mean.dims)))
+        found["greatest"] = _values(contact.isel(mean.argmax(mean.dims)))
+        found["least"] = _values(contact.isel(mean.where(seen).argmin(mean.dims)))
     return found
 
 
-def _probability(here):
-    """Coordinates and probability of one operating point, and the scatter between its pairs."""
-    lower, upper = (here[f"breakthrough_probability_{end}"].item() for end in ("lower", "upper"))
-    return {
-        **{name: here[name].item() for name in _VARIABLES},
-        "mean": here["breakthrough_probability_mean"].item(),
-        "interval": [lower, upper],
-        "deviation": here["pair_deviation"].item(),
-    }
+def _values(point):
+    """Values of a dataset at one point, by their names."""
+    return {name: one.item() for name, one in point.variables.items() if one.ndim == 0}
 
 
 def _trends(contact):
@@ -245,9 +237,8 @@ def _compared(comparison, gauge, first):
     for model in by_contact_model(comparison)["contact_model"].values:
         chosen = first | {"contact_model": model}
         at = chosen | {"threshold": comparison["comparison_threshold"].item()}
-        values = {name: one for name, one in _at(comparison, at).variables.items() if one.ndim == 0}
         gauged = _gauged(_at(gauge, chosen)) if gauge else None
-        rows.append({name: one.item() for name, one in values.items()} | {"gauged": gauged})
+        rows.append(_values(_at(comparison, at)) | {"gauged": gauged})
     return rows
 
 
@@ -272,9 +263,8 @@ def _trace(point, film, model, contact, comparison):
     shares = _measured_near(comparison, point) if comparison else np.array([])
     return {
         "model": model,
-        **_probability(contact.sel(point)),
-        "film": _at(film["film_thickness"], point).item(),
-        "lambda_ratio": _at(film["lambda_ratio"], point).item(),
+        **_values(_at(film, point)),
+        **_values(contact.sel(point)),
         "records": shares.size,
         "shares": [shares.min(), shares.max()] if shares.size else [],
     }
