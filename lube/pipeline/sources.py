@@ -57,11 +57,8 @@ def imported_modules(code: str) -> tuple[str, ...]:
     >>> imported_modules("import numpy as np")
     ('numpy',)
     """
-    found, waiting = [], [ast.parse(code)]
-    while waiting:
-        node = waiting.pop(0)
-        # An expression holds no import, and most of the code is in expressions.
-        waiting += [each for each in ast.iter_child_nodes(node) if not isinstance(each, ast.expr)]
+    found = []
+    for node in ast.walk(ast.parse(code)):
         if isinstance(node, ast.ImportFrom) and node.module:
             names = [alias.name for alias in node.names]
             found += [node.module, *(f"{node.module}.{name}" for name in names)]

@@ -15,12 +15,12 @@ from pydantic import Field, field_validator, model_validator
 from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, located, shown
 from lube.physics.pressure_viscosity import DEFINITIONS
-from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
+from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by, read_number
 from lube.study.line_spec import LineSpec
 from lube.study.roller_lines import beyond_cutoffs
 from lube.study.rollers import ROLLERS
 from lube.types import ContactModel, FilmShape, InletHeating, Values
-from lube.units import parse_number, parse_quantity, with_unit
+from lube.units import with_unit
 
 BEYOND = 5.0
 """Kelvin by which deviating temperatures may leave the range of an oil's data."""
@@ -28,15 +28,6 @@ FARTHEST = 1.5
 """Normal deviations are cut off at this many half-ranges."""
 SAMPLE_BATCHES = 8
 """Jobs among which the samples of a study are shared: those that are done are not lost."""
-
-
-def _end(text, units):
-    """Read an end of a range, a number of `units`."""
-    if units == "%":
-        if not text.endswith("%"):
-            raise LubeError(f"got {text!r}, need a number of %")
-        return parse_number(text.removesuffix("%").strip())
-    return parse_quantity(text, units) if units else parse_number(text)
 
 
 def _range(units, example, **limits):
@@ -51,7 +42,7 @@ def _range(units, example, **limits):
         if match is None or (match[1] and not units):
             raise LubeError(f"got {shown(value)}, need a {needed}")
         ends = [f"-{match[1]}", match[1]] if match[1] else [match[2], match[3]]
-        lower, upper = (bounded(_end(end.strip(), units), units, end, **limits) for end in ends)
+        lower, upper = (read_number(end.strip(), units, **limits) for end in ends)
         if lower >= upper:
             raise LubeError(f"got {shown(value)}, need the lower end first")
         return (lower / 100.0, upper / 100.0) if units == "%" else (lower, upper)
