@@ -184,9 +184,8 @@ def quantity(units: str | None, **limits: float) -> BeforeValidator:
         Metadata of an annotated float.
     """
     form, kind = ("quantity", f"quantity in {units}") if units else ("number", "number")
-    return read_by(
-        lambda value: read_number(value, units, **limits), _schema(form, kind, units, limits)
-    )
+    schema = _schema(form, kind, units, limits)
+    return read_by(lambda value: read_number(value, units, **limits), schema)
 
 
 def checked_text(check: Callable[[str], object], kind: str) -> BeforeValidator:
