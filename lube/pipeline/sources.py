@@ -136,17 +136,18 @@ def stage_sources(stage: str) -> list[str]:
     list of str
         The files of `sources`, from the working folder.
     """
-    own = map(from_here, sources(f"import lube.stages.{stage}"))
-    return sorted({*own, *script_sources("stage")})
+    return script_sources("stage", f"import lube.stages.{stage}")
 
 
-def script_sources(name: str) -> list[str]:
+def script_sources(name: str, code: str = "") -> list[str]:
     """List the files of the lube package that a script of the workflow depends on.
 
     Parameters
     ----------
     name : str
         Name of the script in ``workflow/scripts``, or its path below `ROOT`.
+    code : str, optional
+        Python that the script runs.
 
     Returns
     -------
@@ -154,4 +155,4 @@ def script_sources(name: str) -> list[str]:
         The files of `sources`, from the working folder.
     """
     path = ROOT / (name if name.endswith(".py") else f"workflow/scripts/{name}.py")
-    return [from_here(file) for file in sources(path.read_text(encoding="utf-8"))]
+    return [from_here(file) for file in sources(f"{path.read_text(encoding='utf-8')}\n{code}")]

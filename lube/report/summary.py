@@ -91,11 +91,14 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     return render(
         "findings.md",
         study=study,
-        film=_film(film, first, 2.0 * math.pi / study.line_spec.q_max),
+        film=film.sel(first),
+        shortest=2.0 * math.pi / study.line_spec.q_max,
+        **_film(film, first),
         contacts={model: _contact(each.sel(first)) for model, each in contacts.items()},
         trends={model: _trends(each.sel(first)) for model, each in contacts.items()},
         spread=None if lines is None else _spread(film, lines, first),
         held=_held(film, lines, first),
+        limits=model_limits,
         deformed={model: _deformed(model, film, results, first) for model in contacts},
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[
@@ -109,25 +112,17 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     )
 
 
-def _film(film, first, shortest):
-    """Ranges of film and contact width, points by regime, and points outside validity ranges."""
-    thickness, ratio = (film[name].sel(first) for name in ("film_thickness", "lambda_ratio"))
-    half = film["contact_half_width"]
-    width = [2.0 * half.min().item(), 2.0 * half.max().item()]
+def _film(film, first):
+    """Points by regime and outside validity ranges, and what the inlet does to the film."""
     invalid = ~film["in_validity_range"].astype(bool)
     starved = film.sel(first).get("starvation_factor")
     heating = 1.0 - film["inlet_shear_heating_factor"].min().item()
     return {
-        "thickness": [thickness.min().item(), thickness.max().item()],
-        "lambda_ratio": [ratio.min().item(), ratio.max().item()],
-        "width": width,
-        "waves": [one / shortest for one in width],
         "regimes": {
             name.replace("_", " and "): points
             for flag, name in enumerate(REGIMES)
             if (points := int((film["regime"] == flag).sum()))
         },
-        "points": film["regime"].size,
         "outside": invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict(),
         "heating": heating if math.isfinite(heating) else None,
         "starving": 1.0 - starved.min().item() if starved is not None else None,
@@ -178,7 +173,7 @@ def _spread(film, contact, first):
         "formulas": central.size,
         "film": _largest_excess(films),
         "valid": _largest_excess(valid),
-        "probability": [there.min().item(), there.max().item()],
+        "probability": there,
     }
 
 
@@ -208,8 +203,7 @@ def _deformed(model, film, results, first):
 
 def _held(film, contact, first):
     """Load on the asperities, and the numbers of points where the model does not hold."""
-    film = film.sel(first)
-    found, share = {"share": math.nan, "overloaded": 0, "merged": 0}, film.get("surface_load_share")
+    film, found = film.sel(first), {"share": math.nan, "overloaded": 0, "merged": 0}
     if contact is not None:
         contact = contact.sel(first)
         found = {
@@ -217,13 +211,7 @@ def _held(film, contact, first):
             "overloaded": int(model_limits.overloaded(contact).sum()),
             "merged": int(model_limits.merged(contact, film).sum()),
         }
-    return found | {
-        "small": model_limits.LARGEST_DEFORMATION,
-        "surface_share": None if share is None else share.max().item(),
-        "rubbing": int(model_limits.rubbing(film).sum()),
-        "overrubbed": 0 if share is None else int((share > 1.0).sum()),
-        "little": model_limits.LARGEST_SHARE,
-    }
+    return found | {"rubbing": int(model_limits.rubbing(film).sum())}
 
 
 def _largest_excess(films):
@@ -265,8 +253,7 @@ def _trace(point, film, model, contact, comparison):
         "model": model,
         **_values(_at(film, point)),
         **_values(contact.sel(point)),
-        "records": shares.size,
-        "shares": [shares.min(), shares.max()] if shares.size else [],
+        "shares": shares,
     }
 
 
