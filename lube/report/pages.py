@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from lube.report.markdown import escaped, inline
+from lube.study.uncertainty import spoken
 from lube.units import with_unit
 
 
@@ -125,7 +126,7 @@ def _environment(package):
     options = {"undefined": StrictUndefined, "trim_blocks": True, "lstrip_blocks": True}
     escape = select_autoescape(["html"])
     environment = Environment(loader=PackageLoader(package), autoescape=escape, **options)
-    filters = {each.__name__: each for each in (count, ends, escaped, percent, rounded)}
+    filters = {each.__name__: each for each in (count, ends, escaped, percent, rounded, spoken)}
     filters |= {"inline": lambda text: Markup(inline(text)), "unit": with_unit}
     environment.filters |= filters
     return environment

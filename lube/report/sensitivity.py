@@ -7,9 +7,7 @@ import xarray as xr
 
 from lube.grid.operating_points import by_contact_model
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION
-from lube.report.key_tables import markdown_table
-from lube.report.markdown import escaped
-from lube.report.pages import percent, render, rounded
+from lube.report.pages import percent, render
 from lube.schema import POINT_DIMS
 from lube.sensitivity.findings import LEFT, above_noise, narrowing
 from lube.sensitivity.samples import SEED
@@ -20,7 +18,6 @@ from lube.units import with_unit
 
 _PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
-_HEAD = "uncertain", "the study takes", "range or choices", "source: what is known, and why"
 _LEVELS = {"force": "N", "speed": "rpm", "temperature": "degC"}
 _AT_ENDS = *_LEVELS, "viscosity", "pressure_viscosity_coefficient"
 """Quantities that are given at the ends of the operating grid."""
@@ -57,19 +54,12 @@ def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None)
         ", ".join(with_unit(one[name].item(), unit, 4) for name, unit in _LEVELS.items())
         for one in (points.isel(point=order[place]) for place in places)
     ]
-    rows, is_told, taken = [], above_noise(shown, "elementary_effect"), values_taken(study)
-    for name in strength["factor"].values[np.argsort(-strength.values)]:
-        one = shown.sel(factor=name)
-        effects = np.exp(one["elementary_effect"].where(is_told.sel(factor=name)).values)
-        changes = ["–" if np.isnan(each) else f"{rounded(each):g}" for each in effects]
-        given, source = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
-        rows.append((spoken(name), taken[name], given, escaped(source), *changes))
-    ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
-    bands = [f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True)]
-    said = {"table": markdown_table((*_HEAD, *conditions), rows), "taken": taken, "bands": bands}
-    said |= {"left": LEFT, "gains": [*_gains(shown, factors, conditions)]}
-    said |= {"records": records, "explained": _explained(records)}
-    return render("sensitivity.md", study=study, **said)
+    effects = np.exp(shown["elementary_effect"].where(above_noise(shown, "elementary_effect")))
+    ordered = strength["factor"].values[np.argsort(-strength.values)]
+    parts = {"shown": shown.assign(effect=effects).sel(factor=ordered), "conditions": conditions}
+    parts |= {"left": LEFT, "gains": [*_gains(shown, factors, conditions)]}
+    parts |= {"records": records, "explained": _explained(records)}
+    return render("sensitivity.md", study=study, taken=values_taken(study), **parts)
 
 
 def values_taken(study: Study) -> dict[str, str]:
