@@ -37,14 +37,9 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
     str
         Markdown: a table of two columns.
     """
-    properties = ["kinematic_viscosity", "pressure_viscosity_coefficient"]
-    ends = lubricant[properties].isel(temperature=sorted({0, lubricant.sizes["temperature"] - 1}))
-    oils = [
-        (record.title, ends.isel(lubricant=number).to_dataframe().reset_index().to_dict("records"))
-        for number, record in enumerate(study.lubricants[: ends.sizes["lubricant"]])
-    ]
+    ends = lubricant.isel(temperature=sorted({0, lubricant.sizes["temperature"] - 1}))
     points = math.prod(map(len, study.operating_grid.model_dump().values()))
-    return render("facts.md", study=study, oils=oils, points=points, two_pi=2.0 * math.pi)
+    return render("facts.md", study=study, oils=ends, points=points, two_pi=2.0 * math.pi)
 
 
 def made(study: Study) -> str:
@@ -62,8 +57,7 @@ def made(study: Study) -> str:
     """
     libraries = [f"{name} {version(name)}" for name in ("lube", *LIBRARIES, "snakemake")]
     software = [*libraries, f"Python {platform.python_version()}"]
-    creators = [one.name for one in study.about.creators]
-    return render("made.md", creators=creators, commit=commit(), software=software)
+    return render("made.md", study=study, commit=commit(), software=software)
 
 
 def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
