@@ -50,7 +50,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     counts = {name: len(levels) for name, levels in study.operating_grid}
     counts["lubricant"] = len(study.lubricants)
     points = math.prod(counts.values())
-    records, refused = _records(study)
+    usable, total, refused = _records(study)
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
     model = study.film_model | {"answered_lines": None}
@@ -63,9 +63,11 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
         points=points,
         factors=[count(number, spoken(name)) for name, number in counts.items() if number > 1],
         films=overview(*question),
-        records=records,
+        usable=usable,
+        total=total,
         folder=folder,
-        expected_run=_expected_run(study, points),
+        minutes=_minutes(study, points),
+        cores=os.cpu_count(),
         last_run=_last_run(folder),
         notes=[*remarks(*question), *_own_remarks(path, study, arguments["changes"])],
     )
@@ -93,8 +95,8 @@ def _own_remarks(path, study, changes):
         yield f"uncertainty: {base} gives {given}; replace those that are not yours"
 
 
-def _expected_run(study, points):
-    """Estimate time and memory from those of the paper's study.
+def _minutes(study, points):
+    """Estimate the time of a run from that of the paper's study.
 
     A million points of a line take some 0.7 ms at an operating point in pure rolling, or 0.1 s
     where the oil answers them, and 0.9 s at a slide-to-roll ratio of 1. The answer to lines takes
@@ -118,22 +120,14 @@ def _expected_run(study, points):
         spacing = min(line.shortest_wavelength for line in spec.lines) / 5.0
         each = 3e-7 if study.gap.is_answered else 6e-8
         seconds += each * study.rig.pairs * spec.travel * length / spacing**2
-    cores = os.cpu_count()
-    minutes = max(1, round(seconds / 60.0 / cores))
-    time = f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate"
-    return f"{time}; up to {0.4 + size:.1f} GB for each job"
+    return max(1, round(seconds / 60.0 / os.cpu_count()))
 
 
 def _records(study):
-    """Say where the records come from; and one line for each that cannot be used."""
-    if not study.conducts:
-        return "none: the rollers do not conduct", []
-    if not study.has("experiment"):
-        return "none: the simulated rig runs with lines, unless rig.contact_model is surface", []
+    """Count the measured records that can be used, and all; and one line for each that cannot."""
     manifest = study.experiment.manifest
-    if manifest is None:
-        surfaces = " with surfaces" if study.rig.has_surfaces else ""
-        return f"simulated, {count(study.rig.pairs, 'pair')} of rollers{surfaces}", []
+    if manifest is None or not study.has("experiment"):
+        return 0, 0, []
     from lube.recordings.manifest import read_manifest
     from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 
@@ -150,7 +144,7 @@ def _records(study):
     usable = total - len(refused)
     if not usable:
         refused.append(f"{manifest}: no record can be used, need at least one usable record")
-    return f"{usable} of the {total} in {manifest} can be used", refused
+    return usable, total, refused
 
 
 def _last_run(results):
