@@ -93,9 +93,8 @@ def in_units(array: xr.DataArray, units: str) -> xr.DataArray:
     >>> plots.in_units(film, "um").item()
     2.0
     """
-    # As pint writes them: ``m2 s-1`` -> ``m^2 s^-1``.
-    before, after = (re.sub(r"(-?\d+)", r"^\1", each) for each in (array.attrs["units"], units))
-    return (array * convert(1.0, before, after)).assign_attrs(array.attrs | {"units": units})
+    factor = convert(1.0, array.attrs["units"], units)
+    return (array * factor).assign_attrs(array.attrs | {"units": units})
 
 
 def axis_label(array: xr.DataArray, symbol: str | None = None) -> str:
@@ -428,8 +427,7 @@ def interval_bars(
     """
     seen = (mean > 0.0) | (axes.get_yscale() == "linear")
     bars = np.where(seen, [mean - lower, upper - mean], 0.0)
-    points = np.where(seen, mean, np.nan)
-    axes.errorbar(x, points, yerr=bars, capsize=2, elinewidth=1.0, **style)
+    axes.errorbar(x, np.where(seen, mean, np.nan), yerr=bars, capsize=2, elinewidth=1.0, **style)
     limited = ~seen & (np.asarray(upper) > 0.0)  # the upper limit may underflow to 0 as well
     at, limits = np.asarray(x)[limited], np.asarray(upper)[limited]
     arrows = {"uplims": True, "linestyle": "none", "capsize": 2.5, "elinewidth": 1.0}

@@ -27,13 +27,6 @@ from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.types import File
 
-_CORRECTIONS = {
-    "inlet_meniscus": "starvation_factor",
-    "inlet_shear_heating": "inlet_shear_heating_factor",
-    "load_sharing": "surface_load_share",
-}
-"""Values of a study that may change the film, each with the variable that says how much."""
-
 
 @dataclass(frozen=True)
 class Explanation:
@@ -208,13 +201,12 @@ def in_words(explanation: Explanation) -> str:
     str
         Several lines.
     """
-    again, film = explanation.again, explanation.values["film"]
-    is_first = explanation.contact["film_formula"].item() == film["film_formulas"][0]
+    again, formulas = explanation.again, explanation.values["film"]["film_formulas"]
+    is_first = explanation.contact["film_formula"].item() == formulas[0]
     return render(
         "explanation.txt",
         **vars(explanation),
         dims=CONTACT_DIMS,
-        corrections=tuple(factor for key, factor in _CORRECTIONS.items() if film[key] != "none"),
         differing=explanation.differing,
         surfaces=SURFACES // (1 if is_first else FEWER),
         realised=[name for name in again if "realisation" in again[name].dims],

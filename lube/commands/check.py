@@ -12,9 +12,10 @@ from lube.errors import LubeError, StudyError, located
 from lube.grid.plausibility import overview, remarks
 from lube.pipeline.command_line import changes_of, study_of_command
 from lube.pipeline.study_files import StudyFiles
-from lube.report.pages import count
+from lube.report.pages import count, render
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
+from lube.study.resolve import merged
 from lube.study.text_files import read_yaml
 from lube.study.uncertainty import check_uncertainty, spoken
 from lube.types import File
@@ -49,70 +50,53 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     counts = {name: len(levels) for name, levels in study.operating_grid}
     counts["lubricant"] = len(study.lubricants)
     points = math.prod(counts.values())
-    factors = [count(number, spoken(name)) for name, number in counts.items() if number > 1]
-    formulas, realisations = len(study.film_formulas), study.realisations
-    more = count(formulas, "film formula"), count(realisations, "realisation")
-    runs = points * formulas * realisations
-    records, refused = _records(study)
+    usable, total, refused = _records(study)
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
     model = study.film_model | {"answered_lines": None}
     levels = grid.force, grid.speed, study.film_formulas[:1]
     film = film_table(oil, study.rough_rollers, *levels, slide_to_roll_ratio=study.slips, **model)
     question = film, study.line_spec, study.rough_rollers
-    notes = [*remarks(*question), *_taken_over_authors(path, study, arguments["changes"])]
-    if study.has("sensitivity"):
-        try:
-            with located("no sensitivity study is possible: uncertainty"):
-                check_uncertainty(study)
-        except LubeError as error:
-            notes.append(str(error))
-        notes += _taken_over_ranges(path, study, arguments["changes"])
-    lines = {
-        "study": f"{study.name}: valid{', see the remarks below' if notes else ''}",
-        "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),
-        "band": study.band,
-        "contact runs": (
-            " × ".join([f"{runs:,} = {points:,}", *more])
-            if study.has("contact")
-            else "none: no line stands for these surfaces"
-        ),
-        **overview(*question),
-        "records": records,
-        "results": folder,
-        "expected run": _expected_run(study, points),
-        "last run": _last_run(folder),
-    }
-    lines = [f"{name:18}{text}" for name, text in lines.items()]
-    return [*lines, *(f"Remark: {note}" for note in notes)], refused
+    summary = render(
+        "check.txt",
+        study=study,
+        points=points,
+        factors=[count(number, spoken(name)) for name, number in counts.items() if number > 1],
+        films=overview(*question),
+        usable=usable,
+        total=total,
+        folder=folder,
+        minutes=_minutes(study, points),
+        cores=os.cpu_count(),
+        last_run=_last_run(folder),
+        notes=[*remarks(*question), *_own_remarks(path, study, arguments["changes"])],
+    )
+    return summary.splitlines(), refused
 
 
-def _taken_over_authors(path, study, changes):
-    """Say whose names are those of the study that this one is based on."""
-    base, own = _base_and_own(path, changes, "about")
-    if base and "creators" not in own and study.about.creators:
+def _own_remarks(path, study, changes):
+    """Say what is that of the study that this one is based on, and which ranges it cannot have."""
+    content = read_yaml(path, StudyError)
+    base, own = content.get("based_on"), merged(content, changes)
+    if base and study.about.creators and "creators" not in (own.get("about") or ()):
         names = "; ".join(one.name for one in study.about.creators)
         yield f"about.creators: {base} names {names}; put in your own"
-
-
-def _taken_over_ranges(path, study, changes):
-    """Say which ranges are those of the study that this one is based on."""
-    base, own = _base_and_own(path, changes, "uncertainty")
+    if not study.has("sensitivity"):
+        return
+    try:
+        with located("no sensitivity study is possible: uncertainty"):
+            check_uncertainty(study)
+    except LubeError as error:
+        yield str(error)
+    own = own.get("uncertainty") or ()
     names = [spoken(one.name) for one in study.uncertainty.factors() if one.name not in own]
     if base and names:
         given = f"the ranges and choices of {', '.join(names)}"
         yield f"uncertainty: {base} gives {given}; replace those that are not yours"
 
 
-def _base_and_own(path, changes, section):
-    """Return the study that a file is based on, if any, and its own keys of a section."""
-    content = read_yaml(path, StudyError)
-    own = {*(content.get(section) or ()), *((changes or {}).get(section) or ())}
-    return content.get("based_on"), own
-
-
-def _expected_run(study, points):
-    """Estimate time and memory from those of the paper's study.
+def _minutes(study, points):
+    """Estimate the time of a run from that of the paper's study.
 
     A million points of a line take some 0.7 ms at an operating point in pure rolling, or 0.1 s
     where the oil answers them, and 0.9 s at a slide-to-roll ratio of 1. The answer to lines takes
@@ -136,22 +120,14 @@ def _expected_run(study, points):
         spacing = min(line.shortest_wavelength for line in spec.lines) / 5.0
         each = 3e-7 if study.gap.is_answered else 6e-8
         seconds += each * study.rig.pairs * spec.travel * length / spacing**2
-    cores = os.cpu_count()
-    minutes = max(1, round(seconds / 60.0 / cores))
-    time = f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate"
-    return f"{time}; up to {0.4 + size:.1f} GB for each job"
+    return max(1, round(seconds / 60.0 / os.cpu_count()))
 
 
 def _records(study):
-    """Say where the records come from; and one line for each that cannot be used."""
-    if not study.conducts:
-        return "none: the rollers do not conduct", []
-    if not study.has("experiment"):
-        return "none: the simulated rig runs with lines, unless rig.contact_model is surface", []
+    """Count the measured records that can be used, and all; and one line for each that cannot."""
     manifest = study.experiment.manifest
-    if manifest is None:
-        surfaces = " with surfaces" if study.rig.has_surfaces else ""
-        return f"simulated, {count(study.rig.pairs, 'pair')} of rollers{surfaces}", []
+    if manifest is None or not study.has("experiment"):
+        return 0, 0, []
     from lube.recordings.manifest import read_manifest
     from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 
@@ -168,7 +144,7 @@ def _records(study):
     usable = total - len(refused)
     if not usable:
         refused.append(f"{manifest}: no record can be used, need at least one usable record")
-    return f"{usable} of the {total} in {manifest} can be used", refused
+    return usable, total, refused
 
 
 def _last_run(results):

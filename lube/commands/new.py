@@ -25,9 +25,7 @@ OF_ROLLERS = {"radius": "m", "roughness": "m"}
 OF_GRID = {"force": "N", "speed": "rpm", "temperature": "degC"}
 """Options for levels with a unit, and the kind of unit."""
 
-# Operating point of the thinnest film in the paper's study.
-_THINNEST = {"force": "1600 N", "speed": "600/7 rpm", "temperature": "80 degC"}
-_RADIUS = "50 mm"  # of the paper's rollers
+_RADIUS = ["50"], "mm"  # of the paper's rollers
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+)?"
 _NUMBERS = re.compile(rf"((?:{_NUMBER},?\s+)*{_NUMBER})\s*(1/\w+|[^\d\s/,.].*)")
@@ -77,11 +75,15 @@ def new_study(
         "oils": [os.path.relpath(oil, folder) if is_record_path(oil) else oil for oil in oils],
         "records": records and os.path.relpath(records, folder),
     }
+    (radius, *_), unit = numbers.get("radius", _RADIUS)
+    waves = {"longest": LONGEST_WAVELENGTH, "shortest": SHORTEST_WAVELENGTH}
+    lengths = (parse_quantity(one, "m") for one in (f"{radius} {unit}", SHORTEST_WAVELENGTH))
     text = render(
         "study.yaml",
         **{name: text and json.dumps(text, ensure_ascii=False) for name, text in texts.items()},
-        **_values(numbers),
-        **{"schema": schema_line("study", path), "path": path, "name": path.stem},
+        **waves | {"schema": schema_line("study", path), "path": path, "name": path.stem},
+        points=grid_points(*lengths),
+        numbers=numbers,
         realisations=realisations,
     )
     return _written(path, text, None if records is None else Path(records))
@@ -100,22 +102,6 @@ def _numbers(option, text):
         for value in values:
             parse_quantity(f"{value} {units}", (OF_ROLLERS | OF_GRID)[option])
     return values, units
-
-
-def _values(numbers):
-    """Values of the template that follow from the options with units."""
-    keys = {"radius": "radius", "roughness": "rms_roughness"}
-    given = {keys[name]: numbers[name] for name in OF_ROLLERS if name in numbers}
-    rollers, thinnest = {}, dict(_THINNEST)
-    for roller, side in (("first", 0), ("second", -1)) if given else ():
-        rollers[roller] = {key: f"{values[side]} {unit}" for key, (values, unit) in given.items()}
-    levels = {name: numbers[name] for name in OF_GRID if name in numbers}
-    for name, (values, unit) in levels.items():
-        thinnest[name] = f"{values[0 if name == 'speed' else -1]} {unit}"
-    waves = {"longest": LONGEST_WAVELENGTH, "shortest": SHORTEST_WAVELENGTH}
-    radius = rollers.get("first", {}).get("radius", _RADIUS)
-    points = grid_points(*(parse_quantity(each, "m") for each in (radius, SHORTEST_WAVELENGTH)))
-    return waves | {"rollers": rollers, "levels": levels, "thinnest": thinnest, "points": points}
 
 
 def _written(path, text, records):

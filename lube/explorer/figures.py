@@ -208,9 +208,8 @@ def _probability_along(sources, across, shares):
 def _regime_map(film, validity, sources):
     """Draw the operating points on the map of the four regimes, over the Moes numbers."""
     frames = np.array([[*one["moes_load"], *one["moes_material"]] for one in validity.values()])
-    loads = np.append(film["moes_load"].values, frames[:, :2])
     materials = np.append(film["moes_material"].values, frames[:, 2:])
-    left, right = _spread(loads, 1.6)
+    left, right = _spread(np.append(film["moes_load"].values, frames[:, :2]), 1.6)
     bottom, top = max(materials.min() - 1.0, 0.05), materials.max() + 1.0
     across, up = np.geomspace(left, right, 400), np.linspace(bottom, top, 300)
     flags = regime(across, up[:, None])
@@ -251,9 +250,8 @@ def _master_curve(sources, ratios, shares):
 def _master_map(master, span, sources):
     """Draw the master map: each value is a coloured field."""
     ratios = np.array(master["lambda_ratio"])
-    widths = 1e6 * np.array(master["contact_width"])
     edges = np.exp(_edges(np.log(ratios)))
-    lines = _edges(widths)
+    lines = _edges(1e6 * np.array(master["contact_width"]))
     mean = np.array(master["mean"], dtype=float).ravel()
     rows, columns = np.divmod(np.arange(mean.size), ratios.size)
     mapper = models.LogColorMapper(

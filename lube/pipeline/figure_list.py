@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lube.pipeline.cells import cells_of, datasets_of, python_of
-from lube.pipeline.sources import from_here, script_sources, sources
+from lube.pipeline.sources import from_here, script_sources
 from lube.report.markdown import title_and_text
 from lube.schema import ON_REQUEST
 from lube.study.study import Study
@@ -65,8 +65,7 @@ class Figure:
     @property
     def chapter(self) -> str:
         """Chapter of the report, from a tag such as ``chapter-oil-and-film``."""
-        words = [*self._tagged("chapter-"), FURTHER][0]
-        return words.replace("-", " ").capitalize()
+        return [*self._tagged("chapter-"), FURTHER][0].replace("-", " ").capitalize()
 
     def fits(self, study: Study) -> bool:
         """Whether a study has what the figure compares.
@@ -100,9 +99,9 @@ class Figure:
 def _read(notebook):
     cells, datasets = cells_of(notebook), sorted(set(datasets_of(notebook).values()))
     code = "\n".join(python_of(cell, notebook) for cell in cells if cell["type"] == "code")
-    files = sorted({*map(from_here, sources(code)), *script_sources("figure")})
     title, text = title_and_text(cells[0]["source"] if cells[0]["type"] == "markdown" else "")
-    return Figure(notebook.stem, cells, datasets, files, title or notebook.stem, text, _tags(cells))
+    files, tags = script_sources("figure", code), _tags(cells)
+    return Figure(notebook.stem, cells, datasets, files, title or notebook.stem, text, tags)
 
 
 def _tags(cells):

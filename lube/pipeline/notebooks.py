@@ -188,9 +188,8 @@ def _failure(executed, exit_code):
     if exit_code != _CELL_FAILED:
         return f"its kernel was killed in cell {started[-1]}, perhaps because memory ran out"
     outputs = [(n, one) for n, cell in enumerate(cells, 1) for one in cell.get("outputs", ())]
-    errors = [(n, one) for n, one in outputs if one.output_type == "error"]
     # The error is not always in the cell that ran last: a cell may show an error and go on.
-    number, error = errors[-1]
+    number, error = [(n, one) for n, one in outputs if one.output_type == "error"][-1]
     traceback = _COLOUR.sub("", "\n".join(error.traceback))
     for n, cell in enumerate(cells, 1):
         traceback = traceback.replace(f"Cell In[{cell.get('execution_count')}]", f"Cell {n}")

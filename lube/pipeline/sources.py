@@ -57,11 +57,8 @@ def imported_modules(code: str) -> tuple[str, ...]:
     >>> imported_modules("import numpy as np")
     ('numpy',)
     """
-    found, waiting = [], [ast.parse(code)]
-    while waiting:
-        node = waiting.pop(0)
-        # An expression holds no import, and most of the code is in expressions.
-        waiting += [each for each in ast.iter_child_nodes(node) if not isinstance(each, ast.expr)]
+    found = []
+    for node in ast.walk(ast.parse(code)):
         if isinstance(node, ast.ImportFrom) and node.module:
             names = [alias.name for alias in node.names]
             found += [node.module, *(f"{node.module}.{name}" for name in names)]
@@ -139,17 +136,18 @@ def stage_sources(stage: str) -> list[str]:
     list of str
         The files of `sources`, from the working folder.
     """
-    own = map(from_here, sources(f"import lube.stages.{stage}"))
-    return sorted({*own, *script_sources("stage")})
+    return script_sources("stage", f"import lube.stages.{stage}")
 
 
-def script_sources(name: str) -> list[str]:
+def script_sources(name: str, code: str = "") -> list[str]:
     """List the files of the lube package that a script of the workflow depends on.
 
     Parameters
     ----------
     name : str
         Name of the script in ``workflow/scripts``, or its path below `ROOT`.
+    code : str, optional
+        Python that the script runs.
 
     Returns
     -------
@@ -157,4 +155,4 @@ def script_sources(name: str) -> list[str]:
         The files of `sources`, from the working folder.
     """
     path = ROOT / (name if name.endswith(".py") else f"workflow/scripts/{name}.py")
-    return [from_here(file) for file in sources(path.read_text(encoding="utf-8"))]
+    return [from_here(file) for file in sources(f"{path.read_text(encoding='utf-8')}\n{code}")]

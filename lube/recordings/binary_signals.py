@@ -146,8 +146,7 @@ def _tdms_channel(group, array):
     interval = known.get("wf_increment")
     if interval is not None:
         interval = f"{interval} {known.get('wf_xunit_string') or 's'}"
-    full_name = f"{group}/{array.name}"
-    return Channel(array.name, units, full_name, group, len(array), array, interval)
+    return Channel(array.name, units, f"{group}/{array.name}", group, len(array), array, interval)
 
 
 def open_binary(

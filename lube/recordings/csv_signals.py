@@ -85,8 +85,7 @@ class TextSignal:
 
     def where(self, sample: int) -> str:
         """Line of a sample, counted from 0, in the file."""
-        number, _ = self._row(sample)
-        return f"line {number}"
+        return f"line {self._row(sample)[0]}"
 
     def may_begin_with(self, row: str) -> bool:
         """Whether a line has as many cells as columns, with numbers in those that are read."""

@@ -101,8 +101,7 @@ class Row(StrictModel):
 
     @model_validator(mode="after")
     def _check_interval(self):
-        ends = [self.lower, self.probability, self.upper]
-        given = [share for share in ends if share is not None]
+        given = [one for one in (self.lower, self.probability, self.upper) if one is not None]
         if given != sorted(given):
             raise ValueError(f"probability: got {given}, need lower <= probability <= upper")
         return self

@@ -14,7 +14,7 @@ import numpy as np
 from lube.errors import DataError, LubeError, located, shown
 from lube.recordings.binary_signals import BinarySignal, open_binary
 from lube.recordings.csv_signals import TextSignal, open_text
-from lube.study.field_types import bounded
+from lube.study.field_types import read_number
 from lube.units import parse_electrical, parse_number
 
 _KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
@@ -173,7 +173,7 @@ def _kind(path):
 def _before_amplifier(path, measured, gain, offset):
     """Undo the gain and offset of an amplifier."""
     with located(f"{path}: gain", DataError):
-        gain = bounded(parse_number(gain), None, other_than=0.0)
+        gain = read_number(gain, None, other_than=0.0)
     with located(f"{path}: offset", DataError):
         offset = _offset(offset, measured.quantity)
     return replace(measured, factor=measured.factor / gain, shift=(0.0 - offset) / gain)

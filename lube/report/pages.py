@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from lube.report.markdown import escaped, inline
+from lube.study.uncertainty import spoken
 from lube.units import with_unit
 
 
@@ -78,6 +79,27 @@ def percent(share: float) -> str:
     return f"{digits} %"
 
 
+def ends(values: np.ndarray) -> list[float]:
+    """Return the least and the greatest of some values; nothing if there are none.
+
+    Parameters
+    ----------
+    values : numpy.ndarray or xarray.DataArray
+        The values.
+
+    Returns
+    -------
+    list of float
+        Both.
+
+    Examples
+    --------
+    >>> ends(np.array([3.0, 1.0, 2.0]))
+    [1.0, 3.0]
+    """
+    return [values.min().item(), values.max().item()] if values.size else []
+
+
 def count(number: float, noun: str) -> str:
     """Print a number and a noun.
 
@@ -104,7 +126,7 @@ def _environment(package):
     options = {"undefined": StrictUndefined, "trim_blocks": True, "lstrip_blocks": True}
     escape = select_autoescape(["html"])
     environment = Environment(loader=PackageLoader(package), autoescape=escape, **options)
-    filters = {each.__name__: each for each in (count, escaped, percent, rounded)}
+    filters = {each.__name__: each for each in (count, ends, escaped, percent, rounded, spoken)}
     filters |= {"inline": lambda text: Markup(inline(text)), "unit": with_unit}
     environment.filters |= filters
     return environment

@@ -1,41 +1,26 @@
 """What the probability of a study rests on, as a table of the report."""
 
+from collections import Counter
+
 import numpy as np
 import xarray as xr
 
 from lube.grid.operating_points import by_contact_model
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION
-from lube.report.key_tables import markdown_table
-from lube.report.markdown import escaped
-from lube.report.pages import count, percent, render, rounded
+from lube.report.pages import percent, render
 from lube.schema import POINT_DIMS
 from lube.sensitivity.findings import LEFT, above_noise, narrowing
 from lube.sensitivity.samples import SEED
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import Study
-from lube.study.uncertainty import CHOICES, spoken
+from lube.study.uncertainty import CHOICES, UNITS, spoken
 from lube.units import with_unit
 
-_BANDS = {
-    "mean": "within the interval of the mean over pairs of rollers",
-    "pair": "within the band of one pair only",
-    "assumptions": "within that of the assumptions only",
-    "none": "in none of the bands",
-    "": "not judged, as a film or a band is not known",
-}
 _PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
-_HEAD = "uncertain", "the study takes", "range or choices", "source: what is known, and why"
 _LEVELS = {"force": "N", "speed": "rpm", "temperature": "degC"}
-_OF_OIL = {"viscosity": "m^2/s", "pressure_viscosity_coefficient": "1/Pa"}
-_LENGTHS = (
-    "rms_roughness first_rms_roughness second_rms_roughness longest_wavelength shortest_wavelength "
-    "critical_thickness"
-).split()
-_UNITS = _LEVELS | _OF_OIL | dict.fromkeys(_LENGTHS, "m")
-_UNITS |= {"young_modulus": "Pa", "shear_strength": "Pa", "resistivity": "ohm*m"}
-_UNITS |= {"hurst_exponent": "", "skewness": "", "kurtosis": ""}
-"""Units of the quantities that may be uncertain."""
+_AT_ENDS = *_LEVELS, "viscosity", "pressure_viscosity_coefficient"
+"""Quantities that are given at the ends of the operating grid."""
 
 
 def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None) -> str:
@@ -69,23 +54,12 @@ def rests_on(study: Study, found: xr.Dataset, records: xr.Dataset | None = None)
         ", ".join(with_unit(one[name].item(), unit, 4) for name, unit in _LEVELS.items())
         for one in (points.isel(point=order[place]) for place in places)
     ]
-    rows, is_told, taken = [], above_noise(shown, "elementary_effect"), values_taken(study)
-    for name in strength["factor"].values[np.argsort(-strength.values)]:
-        one = shown.sel(factor=name)
-        effects = np.exp(one["elementary_effect"].where(is_told.sel(factor=name)).values)
-        changes = ["–" if np.isnan(each) else f"{rounded(each):g}" for each in effects]
-        given, source = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
-        rows.append((spoken(name), taken[name], given, escaped(source), *changes))
-    if study.resistivity_range:  # no factor of the probability
-        given = study.uncertainty.resistivity
-        cells = "resistivity", taken["resistivity"], given.in_words, escaped(given.source)
-        rows.append((*cells, *["–"] * shown.sizes["point"]))
-    ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
-    band = (f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True))
-    rows.append(("probability, 5 to 95 % of the samples", "", "", "", *band))
-    table = markdown_table((*_HEAD, *conditions), rows)
-    gains, explained = [*_gains(shown, factors, conditions)], _explained(records)
-    return render("sensitivity.md", table=table, left=LEFT, gains=gains, explained=explained)
+    effects = np.exp(shown["elementary_effect"].where(above_noise(shown, "elementary_effect")))
+    ordered = strength["factor"].values[np.argsort(-strength.values)]
+    parts = {"shown": shown.assign(effect=effects).sel(factor=ordered), "conditions": conditions}
+    parts |= {"left": LEFT, "gains": [*_gains(shown, factors, conditions)]}
+    parts |= {"records": records, "explained": _explained(records)}
+    return render("sensitivity.md", study=study, taken=values_taken(study), **parts)
 
 
 def values_taken(study: Study) -> dict[str, str]:
@@ -113,25 +87,17 @@ def values_taken(study: Study) -> dict[str, str]:
     own = {"film_formula": study.film_formulas[0], "contact_model": ", ".join(study.contact_model)}
     own["pressure_viscosity_definition"] = FORMULA_DEFINITION
     words = {name: own.get(name) or getattr(study, name) for name in CHOICES}
-    for name, unit in _UNITS.items():
+    for name, unit in UNITS.items():
         values = numbers.get(name, [getattr(one, name) for one in parts if hasattr(one, name)])
         each = [with_unit(one, unit, 3) for one in values if one is not None]
-        words[name] = (" to " if name in _LEVELS | _OF_OIL else " and ").join(dict.fromkeys(each))
+        words[name] = (" to " if name in _AT_ENDS else " and ").join(dict.fromkeys(each))
     return words
 
 
 def _explained(records):
-    """Say how many records each band explains, by each contact model."""
-    if records is None:
-        return
-    origin, is_exact = records["origin"].item(), records["measured_share_lower"].isnull()
-    for model, of_model in by_contact_model(records)["band_needed"].groupby("contact_model"):
-        counts = ((words, np.sum(of_model.values == name)) for name, words in _BANDS.items())
-        said = "; ".join(f"{number} {words}" for words, number in counts if number)
-        by = f"Of {count(of_model.size, f'{origin} record')} by contact of the {model}"
-        yield f"{by}: {said} (`record_bands.nc`)."
-    if is_exact.any():
-        yield f"{is_exact.sum().item()} of them have no interval: they are taken as exact."
+    """Count the records that each band explains, by each contact model."""
+    models = by_contact_model(records)["band_needed"].groupby("contact_model") if records else ()
+    return {model: Counter(needed.values.ravel().tolist()) for model, needed in models}
 
 
 def _gains(shown, factors, conditions):
@@ -142,5 +108,4 @@ def _gains(shown, factors, conditions):
     gains = narrowing(shown, measurable).transpose("point", "factor").values
     for gain, where in zip(gains, conditions, strict=True):
         if gain.max() > 0.0:
-            best = spoken(measurable[gain.argmax()])
-            yield f"the {best} at {where}, by {percent(gain.max())}"
+            yield f"the {spoken(measurable[gain.argmax()])} at {where}, by {percent(gain.max())}"

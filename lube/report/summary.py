@@ -15,23 +15,11 @@ from lube.schema import LIMITS, MEAN_LIMITS, REGIMES, values_with_limits
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
 from lube.study.study import Study
-from lube.units import with_unit
 
 _FREQUENT, _RARE = 0.1, 0.001
 """Shares of time above and below which contact is called frequent and rare."""
-_AGREEMENT = (
-    "bias rms_difference overlap_share compared_records pairs origin "
-    "overlap_share_expected_lower overlap_share_expected_upper"
-).split()
-"""Measures of agreement between simulation and rig that the summary states."""
-_VARIABLES = {
-    "force": ("normal force", "N"),
-    "speed": ("rotation speed", "rpm"),
-    "temperature": ("temperature", "degC"),
-    "slide_to_roll_ratio": ("slide-to-roll ratio", ""),
-    "lubricant": ("lubricant", None),
-}
-"""Operating variables in words, with their units."""
+_VARIABLES = "force speed temperature slide_to_roll_ratio lubricant".split()
+"""Operating variables that the summary states."""
 
 
 def facts(study: Study, lubricant: xr.Dataset) -> str:
@@ -49,14 +37,9 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
     str
         Markdown: a table of two columns.
     """
-    properties = ["kinematic_viscosity", "pressure_viscosity_coefficient"]
-    ends = lubricant[properties].isel(temperature=sorted({0, lubricant.sizes["temperature"] - 1}))
-    oils = [
-        (record.title, ends.isel(lubricant=number).to_dataframe().reset_index().to_dict("records"))
-        for number, record in enumerate(study.lubricants[: ends.sizes["lubricant"]])
-    ]
+    ends = lubricant.isel(temperature=sorted({0, lubricant.sizes["temperature"] - 1}))
     points = math.prod(map(len, study.operating_grid.model_dump().values()))
-    return render("facts.md", study=study, oils=oils, points=points, two_pi=2.0 * math.pi)
+    return render("facts.md", study=study, oils=ends, points=points, two_pi=2.0 * math.pi)
 
 
 def made(study: Study) -> str:
@@ -74,8 +57,7 @@ def made(study: Study) -> str:
     """
     libraries = [f"{name} {version(name)}" for name in ("lube", *LIBRARIES, "snakemake")]
     software = [*libraries, f"Python {platform.python_version()}"]
-    creators = [one.name for one in study.about.creators]
-    return render("made.md", creators=creators, commit=commit(), software=software)
+    return render("made.md", study=study, commit=commit(), software=software)
 
 
 def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
@@ -103,11 +85,14 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     return render(
         "findings.md",
         study=study,
-        film=_film(film, first, 2.0 * math.pi / study.line_spec.q_max),
+        film=film.sel(first),
+        shortest=2.0 * math.pi / study.line_spec.q_max,
+        **_film(film, first),
         contacts={model: _contact(each.sel(first)) for model, each in contacts.items()},
         trends={model: _trends(each.sel(first)) for model, each in contacts.items()},
         spread=None if lines is None else _spread(film, lines, first),
         held=_held(film, lines, first),
+        limits=model_limits,
         deformed={model: _deformed(model, film, results, first) for model in contacts},
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[
@@ -116,34 +101,23 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
             for point in study.trace_points
             for model, each in contacts.items()
         ],
-        notes={
-            "Records that were refused, and are in no result": _lines(results, "refused"),
-            "Remarks on records": _lines(results, "remarks"),
-        },
+        refused=_lines(results, "refused"),
+        remarks=_lines(results, "remarks"),
     )
 
 
-def _film(film, first, shortest):
-    """Ranges of film and contact width, points by regime, and points outside validity ranges."""
-    thickness, ratio = (film[name].sel(first) for name in ("film_thickness", "lambda_ratio"))
-    half = film["contact_half_width"]
-    width = [2.0 * half.min().item(), 2.0 * half.max().item()]
+def _film(film, first):
+    """Points by regime and outside validity ranges, and what the inlet does to the film."""
     invalid = ~film["in_validity_range"].astype(bool)
-    outside = invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict()
     starved = film.sel(first).get("starvation_factor")
     heating = 1.0 - film["inlet_shear_heating_factor"].min().item()
     return {
-        "thickness": [thickness.min().item(), thickness.max().item()],
-        "lambda_ratio": [ratio.min().item(), ratio.max().item()],
-        "width": width,
-        "waves": [one / shortest for one in width],
         "regimes": {
             name.replace("_", " and "): points
             for flag, name in enumerate(REGIMES)
             if (points := int((film["regime"] == flag).sum()))
         },
-        "points": film["regime"].size,
-        "outside": outside,
+        "outside": invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict(),
         "heating": heating if math.isfinite(heating) else None,
         "starving": 1.0 - starved.min().item() if starved is not None else None,
     }
@@ -162,34 +136,21 @@ def _contact(contact):
         "unseen": upper.where(~seen).max().item(),
     }
     if found["touched"]:
-        found["greatest"] = _probability(contact.isel(mean.argmax(mean.dims)))
-        least = mean.where(seen, np.inf)
-        found["least"] = _probability(contact.isel(least.argmin(mean.dims)))
+        found["greatest"] = _values(contact.isel(mean.argmax(mean.dims)))
+        found["least"] = _values(contact.isel(mean.where(seen).argmin(mean.dims)))
     return found
 
 
-def _probability(here):
-    """Coordinates and probability of one operating point, and the scatter between its pairs."""
-    lower, upper = (here[f"breakthrough_probability_{end}"].item() for end in ("lower", "upper"))
-    return {
-        **{name: here[name].item() for name in _VARIABLES},
-        "mean": here["breakthrough_probability_mean"].item(),
-        "interval": [lower, upper],
-        "deviation": here["pair_deviation"].item(),
-    }
+def _values(point):
+    """Values of a dataset at one point, by their names."""
+    return {name: one.item() for name, one in point.variables.items() if one.ndim == 0}
 
 
 def _trends(contact):
     """Mean probability at each level of the operating variables that have several."""
     mean = contact["breakthrough_probability_mean"]
-    return {
-        words: {
-            level if unit is None else with_unit(float(f"{level:.3g}"), unit): share
-            for level, share in mean.mean(set(mean.dims) - {name}).to_series().items()
-        }
-        for name, (words, unit) in _VARIABLES.items()
-        if mean.sizes[name] > 1
-    }
+    several = [name for name in _VARIABLES if mean.sizes[name] > 1]
+    return {name: mean.mean(set(mean.dims) - {name}).to_series().to_dict() for name in several}
 
 
 def _spread(film, contact, first):
@@ -206,7 +167,7 @@ def _spread(film, contact, first):
         "formulas": central.size,
         "film": _largest_excess(films),
         "valid": _largest_excess(valid),
-        "probability": [there.min().item(), there.max().item()],
+        "probability": there,
     }
 
 
@@ -236,8 +197,7 @@ def _deformed(model, film, results, first):
 
 def _held(film, contact, first):
     """Load on the asperities, and the numbers of points where the model does not hold."""
-    film = film.sel(first)
-    found, share = {"share": math.nan, "overloaded": 0, "merged": 0}, film.get("surface_load_share")
+    film, found = film.sel(first), {"share": math.nan, "overloaded": 0, "merged": 0}
     if contact is not None:
         contact = contact.sel(first)
         found = {
@@ -245,13 +205,7 @@ def _held(film, contact, first):
             "overloaded": int(model_limits.overloaded(contact).sum()),
             "merged": int(model_limits.merged(contact, film).sum()),
         }
-    return found | {
-        "small": model_limits.LARGEST_DEFORMATION,
-        "surface_share": None if share is None else share.max().item(),
-        "rubbing": int(model_limits.rubbing(film).sum()),
-        "overrubbed": 0 if share is None else int((share > 1.0).sum()),
-        "little": model_limits.LARGEST_SHARE,
-    }
+    return found | {"rubbing": int(model_limits.rubbing(film).sum())}
 
 
 def _largest_excess(films):
@@ -261,15 +215,12 @@ def _largest_excess(films):
 
 def _compared(comparison, gauge, first):
     """Agreement between simulation and rig, and the films gauged, for each contact model."""
-    of_models = "contact_model" in comparison.dims
     rows = []
     for model in by_contact_model(comparison)["contact_model"].values:
         chosen = first | {"contact_model": model}
         at = chosen | {"threshold": comparison["comparison_threshold"].item()}
-        row = {name: _at(comparison[name], at).item() for name in _AGREEMENT}
-        row["simulation"] = f"the simulation{f' of {model}s' if of_models else ''}"
-        row["gauged"] = _gauged(_at(gauge, chosen)) if gauge else None
-        rows.append(row)
+        gauged = _gauged(_at(gauge, chosen)) if gauge else None
+        rows.append(_values(_at(comparison, at)) | {"gauged": gauged})
     return rows
 
 
@@ -294,11 +245,9 @@ def _trace(point, film, model, contact, comparison):
     shares = _measured_near(comparison, point) if comparison else np.array([])
     return {
         "model": model,
-        **_probability(contact.sel(point)),
-        "film": _at(film["film_thickness"], point).item(),
-        "lambda_ratio": _at(film["lambda_ratio"], point).item(),
-        "records": shares.size,
-        "shares": [shares.min(), shares.max()] if shares.size else [],
+        **_values(_at(film, point)),
+        **_values(contact.sel(point)),
+        "shares": shares,
     }
 
 

@@ -93,8 +93,7 @@ def _check_variable(array, name, expected, where):
     if array.dims not in (expected.dims, expected.all_dims):
         raise DataError(f"{where}: {name!r} has dimensions {array.dims}, need {expected.dims}")
     kind = {"O": "U", "T": "U", "u": "i"}.get(array.dtype.kind, array.dtype.kind)
-    wanted = "i" if expected.kind == "b" and kind == "i" else expected.kind
-    if kind != wanted:
+    if kind != expected.kind and (kind, expected.kind) != ("i", "b"):
         raise DataError(f"{where}: {name!r} holds {array.dtype}, need kind {expected.kind!r}")
     units = array.attrs.get("units")
     if units != expected.units:

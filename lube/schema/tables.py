@@ -31,6 +31,7 @@ from typing import Any
 
 import numpy as np
 
+_FOLDER = Path(__file__).parent
 _KINDS = {"float": "f", "integer": "i", "boolean": "b", "text": "U"}
 
 
@@ -69,13 +70,13 @@ class Variable:
     all_dims: tuple[str, ...] = ()
 
 
-def read_table(name: str) -> list[dict[str, str]]:
-    """Read a table of the schema.
+def read_table(path: Path) -> list[dict[str, str]]:
+    """Read a table that comes with the package.
 
     Parameters
     ----------
-    name : str
-        File name, such as ``variables.csv``.
+    path : Path
+        CSV file, such as ``variables.csv``.
 
     Returns
     -------
@@ -83,7 +84,7 @@ def read_table(name: str) -> list[dict[str, str]]:
         Its rows, each from column to text.
     """
     # Spreadsheets may begin a file with a byte order mark.
-    with open(Path(__file__).with_name(name), encoding="utf-8-sig", newline="") as file:
+    with open(path, encoding="utf-8-sig", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -107,9 +108,9 @@ def _variable(row):
     )
 
 
-_FILES = read_table("files.csv")
+_FILES = read_table(_FOLDER / "files.csv")
 _VARIABLES = {file: {} for file in ("any", *(row["file"] for row in _FILES))}
-for _row in read_table("variables.csv"):
+for _row in read_table(_FOLDER / "variables.csv"):
     for _file in _row["files"].split():
         _VARIABLES[_file][_row["name"]] = _variable(_row)
 

@@ -130,9 +130,34 @@ def read_by(
     return BeforeValidator(checked, json_schema_input_type=Annotated[Any, WithJsonSchema(schema)])
 
 
-def _number(value, units, limits):
-    """Read a number with its unit, or one without dimension if the unit is None."""
-    number = parse_number(value) if units is None else parse_quantity(value, units)
+def read_number(value: object, units: str | None, **limits: float) -> float:
+    """Read a number with its unit, or one without dimension.
+
+    Parameters
+    ----------
+    value : object
+        As written.
+    units : str or None
+        Unit of the returned number; None, or empty, for one without dimension.
+    **limits : float
+        As in `bounded`, in `units`.
+
+    Returns
+    -------
+    float
+        The number, within its limits.
+
+    Raises
+    ------
+    LubeError
+        If it is no such number.
+
+    Examples
+    --------
+    >>> read_number("50 mm", "m", above=0.0)
+    0.05
+    """
+    number = parse_quantity(value, units) if units else parse_number(value)
     return bounded(number, units, value, **limits)
 
 
@@ -159,7 +184,8 @@ def quantity(units: str | None, **limits: float) -> BeforeValidator:
         Metadata of an annotated float.
     """
     form, kind = ("quantity", f"quantity in {units}") if units else ("number", "number")
-    return read_by(lambda value: _number(value, units, limits), _schema(form, kind, units, limits))
+    schema = _schema(form, kind, units, limits)
+    return read_by(lambda value: read_number(value, units, **limits), schema)
 
 
 def checked_text(check: Callable[[str], object], kind: str) -> BeforeValidator:
@@ -206,7 +232,7 @@ def quantity_or_words(units: str, words: str, pattern: str) -> BeforeValidator:
 
     def parse(value):
         is_words = isinstance(value, str) and re.search(pattern, value)
-        return value if is_words else _number(value, units, limits)
+        return value if is_words else read_number(value, units, **limits)
 
     schema = _schema("words", f"quantity in {units}, or {words}", units, {})
     return read_by(parse, schema | {"limits": limits, "pattern": pattern}, f", or {words}")
@@ -240,7 +266,7 @@ def levels(units: str | None, **limits: float) -> BeforeValidator:
                 typed = [f"{one} {given}" for one in values]
             case _:
                 raise LubeError(f"got {shown(value)}, need {needed}")
-        numbers = tuple(_number(one, units, limits) for one in typed)
+        numbers = tuple(read_number(one, units, **limits) for one in typed)
         for (lower, before), (upper, came) in pairwise(zip(numbers, typed, strict=True)):
             if upper <= lower:
                 raise LubeError(f"got {came} after {before}, need rising levels without repetition")

@@ -5,10 +5,12 @@ Voltages far below a volt are usual, so that the film does not break down electr
 """
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field, StrictInt, model_validator
 
+from lube.schema.tables import read_table
 from lube.study.field_types import StrictModel, levels, quantity
 
 RIG_REALISATIONS = 1_000_000
@@ -16,6 +18,9 @@ RIG_REALISATIONS = 1_000_000
 
 OWN_RIG = "study"
 """Name of a study's own rig among the known ones."""
+
+_TABLE = Path(__file__).with_name("known_rigs.csv")
+"""The known rigs: settings as in a study, what the meter reads, and where they come from."""
 
 _Resistance = Annotated[float, quantity("ohm", above=0.0)]
 
@@ -33,21 +38,9 @@ class Preset(NamedTuple):
         What its meter reads, one of `lube.rig.readings.READINGS`.
     """
 
-    settings: dict[str, Any]
+    settings: dict[str, str]
     source: str
-    reading: str = "threshold"
-
-
-_ECR = (
-    "PCS Instruments, data sheet of the option ECR of the mini traction machine MTM2: some 15 mV "
-    "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm; range assumed"
-)
-
-
-def _ecr(resistor):
-    """Return the settings of an ECR meter."""
-    settings = {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": resistor}
-    return Preset(settings, _ECR, "mean voltage")
+    reading: str
 
 
 KnownRig = Literal[
@@ -58,21 +51,13 @@ KnownRig = Literal[
     "threshold-counter",
     "impedance-bridge",
 ]
-PRESETS: dict[KnownRig, Preset] = {
-    "mtm-ecr": _ecr("100 ohm"),
-    "mtm-ecr-10-ohm": _ecr("10 ohm"),
-    "mtm-ecr-1-kohm": _ecr("1 kohm"),
-    "mtm-ecr-10-kohm": _ecr("10 kohm"),
-    "threshold-counter": Preset(
-        {"bandwidth": "1 MHz", "sampling_rate": "1 MHz", "noise": "50 uV"},
-        "a fast comparator at the study's threshold, from no data sheet; all values assumed",
-    ),
-    "impedance-bridge": Preset(
-        {"bias_voltage": "1 V", "amplifier_range": "2 V", "series_resistance": "1 kohm"},
-        "a bridge as for impedance spectroscopy (Manjunath and others, Lubricants 12 (2024) 51), "
-        "from no data sheet; all values assumed",
-    ),
-}
+
+
+def _preset(reading, source, **settings):
+    return Preset({key: value for key, value in settings.items() if value}, source, reading)
+
+
+PRESETS = {row.pop("name"): _preset(**row) for row in read_table(_TABLE)}
 """Known rigs, by the name that a study gives."""
 
 

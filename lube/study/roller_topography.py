@@ -52,8 +52,7 @@ class RollerTopography(StrictModel):
         from lube.study import topography_lines
 
         with located(kind=ValueError):
-            known = (info.context or {}).get(self.key)
-            self._measured = topography_lines.measured(self, known)
+            self._measured = topography_lines.measured(self, (info.context or {}).get(self.key))
         return self
 
     @property

@@ -262,15 +262,10 @@ class Study(StrictModel):
         Some of the latter are made in every run, since results or the explorer are made from them.
         """
         needed = {"surface_trace"} if self.has_surfaces else set()
-        needed = needed.union(*(self._files_before(name) for name in self.datasets))
+        needed = needed.union(*map(self.forerunners, self.datasets))
         made = needed.union(path.stem for path in Path(folder).glob("*.nc"))
         extra = [name for name, target in ON_REQUEST.items() if target != "benchmark"]
         return [*self.datasets, *(name for name in extra if name in made and self.has(name))]
-
-    def _files_before(self, stage):
-        """Names of all stages whose files a stage is made from, directly or through others."""
-        direct = set(self.inputs_of(stage))
-        return direct.union(*(self._files_before(name) for name in direct))
 
     def inputs_of(self, stage: str) -> tuple[str, ...]:
         """Names of the stages whose files a stage reads, of those that the study has."""
@@ -462,8 +457,7 @@ class Study(StrictModel):
                 "is one pair"
             )
         # All traces share one time axis, whose step is set by the faster surface.
-        axes = {(point["speed"], point["slide_to_roll_ratio"]) for point in self.trace_points}
-        if len(axes) > 1:
+        if len({(point["speed"], point["slide_to_roll_ratio"]) for point in self.trace_points}) > 1:
             raise ValueError("traces: got several speeds or slide-to-roll ratios, need one for all")
         return self
 

@@ -15,12 +15,12 @@ from pydantic import Field, field_validator, model_validator
 from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, located, shown
 from lube.physics.pressure_viscosity import DEFINITIONS
-from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
+from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by, read_number
 from lube.study.line_spec import LineSpec
 from lube.study.roller_lines import beyond_cutoffs
 from lube.study.rollers import ROLLERS
 from lube.types import ContactModel, FilmShape, InletHeating, Values
-from lube.units import parse_number, parse_quantity, with_unit
+from lube.units import with_unit
 
 BEYOND = 5.0
 """Kelvin by which deviating temperatures may leave the range of an oil's data."""
@@ -28,15 +28,6 @@ FARTHEST = 1.5
 """Normal deviations are cut off at this many half-ranges."""
 SAMPLE_BATCHES = 8
 """Jobs among which the samples of a study are shared: those that are done are not lost."""
-
-
-def _end(text, units):
-    """Read an end of a range, a number of `units`."""
-    if units == "%":
-        if not text.endswith("%"):
-            raise LubeError(f"got {text!r}, need a number of %")
-        return parse_number(text.removesuffix("%").strip())
-    return parse_quantity(text, units) if units else parse_number(text)
 
 
 def _range(units, example, **limits):
@@ -51,7 +42,7 @@ def _range(units, example, **limits):
         if match is None or (match[1] and not units):
             raise LubeError(f"got {shown(value)}, need a {needed}")
         ends = [f"-{match[1]}", match[1]] if match[1] else [match[2], match[3]]
-        lower, upper = (bounded(_end(end.strip(), units), units, end, **limits) for end in ends)
+        lower, upper = (read_number(end.strip(), units, **limits) for end in ends)
         if lower >= upper:
             raise LubeError(f"got {shown(value)}, need the lower end first")
         return (lower / 100.0, upper / 100.0) if units == "%" else (lower, upper)
@@ -225,47 +216,47 @@ def spoken(name: str) -> str:
     return words.replace("hurst", "Hurst").replace("young", "Young's")
 
 
-def _of(group):
-    """Say to which group a field belongs."""
-    return Field(None, json_schema_extra={"group": group})
+def _of(group, **unit):
+    """Say to which group a field belongs, and the unit of the study's value if it is a quantity."""
+    return Field(None, json_schema_extra={"group": group, **unit})
 
 
 class Uncertainty(StrictModel):
     """Quantities and choices of the model that a study does not know exactly."""
 
-    viscosity: Relative | None = _of("oil")
+    viscosity: Relative | None = _of("oil", unit="m^2/s")
     """viscosity of the oils"""
-    pressure_viscosity_coefficient: Relative | None = _of("oil")
+    pressure_viscosity_coefficient: Relative | None = _of("oil", unit="1/Pa")
     """pressure-viscosity coefficient of the oils"""
     pressure_viscosity_definition: OfDefinition | None = _of("oil")
     """definition of the coefficient where its source states none; a secant is to 200 MPa"""
-    temperature: OfTemperature | None = _of("conditions")
+    temperature: OfTemperature | None = _of("conditions", unit="degC")
     """temperature of the oil at the inlet"""
-    force: Relative | None = _of("conditions")
+    force: Relative | None = _of("conditions", unit="N")
     """normal force"""
-    speed: Relative | None = _of("conditions")
+    speed: Relative | None = _of("conditions", unit="rpm")
     """speed of both rollers"""
-    young_modulus: Relative | None = _of("conditions")
+    young_modulus: Relative | None = _of("conditions", unit="Pa")
     """Young's modulus of both rollers"""
-    rms_roughness: Relative | None = _of("surface")
+    rms_roughness: Relative | None = _of("surface", unit="m")
     """rms height of the roughness of both rollers alike"""
-    first_rms_roughness: Relative | None = _of("surface")
+    first_rms_roughness: Relative | None = _of("surface", unit="m")
     """rms height of the first roller's roughness"""
-    second_rms_roughness: Relative | None = _of("surface")
+    second_rms_roughness: Relative | None = _of("surface", unit="m")
     """rms height of the second roller's roughness"""
-    hurst_exponent: OfExponent | None = _of("surface")
+    hurst_exponent: OfExponent | None = _of("surface", unit="")
     """Hurst exponent of both rollers"""
-    longest_wavelength: Relative | None = _of("surface")
+    longest_wavelength: Relative | None = _of("surface", unit="m")
     """longest wavelength of both rollers' roughness"""
-    shortest_wavelength: Relative | None = _of("surface")
+    shortest_wavelength: Relative | None = _of("surface", unit="m")
     """shortest wavelength of both rollers' roughness"""
-    skewness: OfSkewness | None = _of("surface")
+    skewness: OfSkewness | None = _of("surface", unit="")
     """skewness of the heights of both rollers"""
-    kurtosis: OfKurtosis | None = _of("surface")
+    kurtosis: OfKurtosis | None = _of("surface", unit="")
     """kurtosis of the heights of both rollers; at least that of lognormal heights as skewed"""
-    critical_thickness: Relative | None = _of("layer")
+    critical_thickness: Relative | None = _of("layer", unit="m")
     """critical thickness of the boundary layer"""
-    shear_strength: Relative | None = _of("layer")
+    shear_strength: Relative | None = _of("layer", unit="Pa")
     """limiting shear stress of the boundary layer"""
     film_formula: OfFormula | None = _of("film")
     """film formula, of which the study takes its first"""
@@ -277,7 +268,7 @@ class Uncertainty(StrictModel):
     """deformation of the roughness"""
     contact_model: OfContact | None = _of("contact model")
     """contact of the line, or of the surface that it stands for"""
-    resistivity: Relative | None = _of("electrical")
+    resistivity: Relative | None = _of("electrical", unit="ohm*m")
     """resistivity of the rollers' material, on which resistances depend, but no probability"""
 
     def factors(self) -> list[Factor]:
@@ -292,6 +283,9 @@ CHOICES = [name for name, kind in _KINDS.items() if issubclass(kind, Choice)]
 """Factors that are choices, which cannot be measured."""
 BAND = "longest_wavelength", "shortest_wavelength"
 """Factors that are ends of the band of wavelengths."""
+_EXTRAS = {name: field.json_schema_extra for name, field in Uncertainty.model_fields.items()}
+UNITS = {name: extra["unit"] for name, extra in _EXTRAS.items() if "unit" in extra}
+"""Unit of the study's value of each quantity, empty for a pure number."""
 
 
 def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:

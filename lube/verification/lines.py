@@ -277,9 +277,8 @@ def scaled_checks(study: Study, lubricant: xr.Dataset) -> dict[str, float]:
 
 
 def _other_rollers(rollers):
-    each = ((name, getattr(rollers, name)) for name in ROLLERS)
-    larger = {name: one.model_copy(update={"radius": LARGER * one.radius}) for name, one in each}
-    return rollers.model_copy(update=larger | {"length": LONGER * rollers.length})
+    radii = (LARGER * getattr(rollers, name).radius for name in ROLLERS)
+    return rollers.with_radii(*radii).model_copy(update={"length": LONGER * rollers.length})
 
 
 def on_grids(study: Study, threads: int | None) -> dict[str, Array]:

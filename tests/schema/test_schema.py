@@ -1,11 +1,13 @@
 """The tables of all files are complete, and every departure from them is refused by name."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from lube.errors import DataError
-from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label, values_with_limits
+from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label, tables, values_with_limits
 from lube.schema.tables import read_table
 
 VARIABLES = [(kind, name) for kind in FILES for name in FILES[kind]]
@@ -63,7 +65,7 @@ CONTENTS = {
 
 
 def test_the_table_describes_each_variable_of_each_file_once():
-    rows = read_table("variables.csv")
+    rows = read_table(Path(tables.__file__).with_name("variables.csv"))
     named = [(file, row["name"]) for row in rows for file in row["files"].split()]
     assert len(set(named)) == len(named)
     assert {file for file, _ in named} == {"any", *FILES}

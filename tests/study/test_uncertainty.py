@@ -61,7 +61,7 @@ def test_ranges_are_read_in_their_units(tmp_path):
     ("key", "given", "said"),
     [
         ("force", {"range": "2 % to -2 %"} | SOURCE, "got '2 % to -2 %', need the lower end first"),
-        ("force", {"range": "+- 2"} | SOURCE, "need a number of %"),
+        ("force", {"range": "+- 2"} | SOURCE, "such as '1 %'"),
         ("force", {"range": "+- -5 %"} | SOURCE, "got '+- -5 %', need a range such as +- 10 %"),
         ("force", {"range": "2 %"} | SOURCE, "got '2 %', need a range such as"),
         ("force", {"range": "-120 % to 0 %"} | SOURCE, "above -100 and at most 1000 %"),
