@@ -70,6 +70,8 @@ area."""
 AT_ONCE = 10
 """Operating points at which the oil answers that are sampled together, for which surfaces are drawn
 again: what the oil adds to the covariances takes 5 to 40 MB a point."""
+_ALL = 1.0 - 1e-12
+"""Probability taken as certain."""
 _COUNTS = {"geometric_contact_probability": "contacts", "breakthrough_probability": "breakthroughs"}
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
 _RATIO = "breakdown_ratio"
@@ -334,8 +336,9 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     rows = max(int(pair.length / down), 1)
     results = {}
     for which, (name, of_contacts) in enumerate(_COUNTS.items()):
-        limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
-        results |= values_with_limits(name, limits)
+        # Even about the number of first contacts, for near 1 the probability scatters to one side.
+        limits = jackknife_interval(first[:, :, which], partial(first_contacts, rows=rows))
+        results |= values_with_limits(name, [-np.expm1(-each) for each in limits])
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
     in_contact, broken = (mean_interval(along * numbers[:, :, which]) for which in (2, 3))
     results |= values_with_limits(_RATIO, broken)  # m, of the strip's width
@@ -406,8 +409,8 @@ def _on_one_surface(surface, covariances, strips, reach, seeds):
     return np.stack(first), np.stack(numbers)
 
 
-def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:
-    """Compute the probability that any row of a strip touches.
+def first_contacts(first: np.ndarray, rows: int) -> np.ndarray:
+    """Compute how many independent contacts in a strip would make it touch as often.
 
     Parameters
     ----------
@@ -420,19 +423,19 @@ def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:
     Returns
     -------
     numpy.ndarray
-        Shape (...).
+        Shape (...): -log(1 - P) of the probability P that any row touches.
 
     Examples
     --------
     Independent rows, one in ten of which touches:
 
     >>> first = 0.1 * 0.9 ** np.arange(4)
-    >>> [f"{strip_probability(first, rows):.6f}" for rows in (2, 10)]
+    >>> [f"{-np.expm1(-first_contacts(first, rows)):.6f}" for rows in (2, 10)]
     ['0.190000', '0.651322']
     """
     touched = np.cumsum(first, axis=-1)
     if rows <= first.shape[-1]:
-        return np.minimum(touched[..., rows - 1], 1.0)
+        return -np.log1p(-np.minimum(touched[..., rows - 1], _ALL))
     # After R rows, or once half of the strips have touched, the probability that a row touches if
     # none before it has is taken as constant: its mean over the second half of the rows so far.
     before = np.concatenate([np.zeros_like(touched[..., :1]), touched[..., :-1]], axis=-1)
@@ -441,5 +444,5 @@ def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:
     late = (number >= counted // 2) & (number <= counted)
     hazard = np.sum(first * late, axis=-1) / np.sum((1.0 - before) * late, axis=-1)
     here = np.take_along_axis(before, counted, axis=-1)[..., 0]
-    further = (rows - counted[..., 0]) * np.log1p(-np.minimum(hazard, 1.0 - 1e-12))
-    return -np.expm1(np.log1p(-np.minimum(here, 1.0 - 1e-12)) + further)
+    further = (rows - counted[..., 0]) * np.log1p(-np.minimum(hazard, _ALL))
+    return -np.log1p(-np.minimum(here, _ALL)) - further

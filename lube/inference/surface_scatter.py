@@ -74,7 +74,9 @@ def surface_prediction(
         Lower and upper limit.
     """
     noise = np.hypot(noise, standard_error(limits))
-    return prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
+    lower, upper = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
+    # No pair is better known than the mean, whose limits are not as far from it near 0 and 1.
+    return np.minimum(lower, limits[1]), np.maximum(upper, limits[2])
 
 
 def pair_correlation(share: Array) -> Array:

@@ -43,12 +43,13 @@ def mean_over_first(values: Array) -> Array:
 
 
 def standard_error(limits: Sequence[Array]) -> Array:
-    """Find the standard error of a mean whose 95 % limits may be cut, such as at 0 or 1.
+    """Find the standard error of a probability of contact of surfaces.
 
     Parameters
     ----------
     limits : sequence of numpy.ndarray
-        The mean, its lower and its upper limit. The one farther away is not cut.
+        The probability, its lower and its upper 95 % limit, as from
+        `lube.contact.surface_strip.surface_contact`: as far from it in log(1 - P), unless cut at 0.
 
     Returns
     -------
@@ -57,11 +58,12 @@ def standard_error(limits: Sequence[Array]) -> Array:
 
     Examples
     --------
-    >>> standard_error([np.array([0.5, 0.9]), np.array([0.4, 0.5]), np.array([0.6, 1.0])])
-    array([0.05, 0.2 ])
+    >>> rare_and_frequent = np.array([[0.02, 0.9], [0.0, 0.8], [0.06, 0.95]])
+    >>> standard_error(rare_and_frequent).round(3)
+    array([0.02 , 0.035])
     """
-    mean, lower, upper = limits
-    return 0.5 * np.maximum(mean - lower, upper - mean)
+    mean, lower, upper = (-np.log1p(-np.minimum(limit, 1.0 - 1e-12)) for limit in limits)
+    return 0.5 * np.exp(-mean) * np.where(mean < 0.5, upper - mean, mean - lower)
 
 
 def mean_or_nan(values: Array) -> float:
@@ -292,7 +294,7 @@ def mean_interval(values: Array, most: float = np.inf) -> tuple[Array, Array, Ar
 
 
 def jackknife_interval(
-    values: Array, function: Callable[[Array], Array], most: float = np.inf
+    values: Array, function: Callable[[Array], Array]
 ) -> tuple[Array, Array, Array]:
     r"""Compute a function of the mean of independent values, and its 95 % interval.
 
@@ -308,14 +310,12 @@ def jackknife_interval(
     values : numpy.ndarray
         Shape (R, ...), with R of two or more.
     function : callable
-        Function of the mean over R.
-    most : float, optional
-        Largest possible result.
+        Function of the mean over R, of positive values.
 
     Returns
     -------
     result, lower, upper : numpy.ndarray
-        Shape of the function's result, from zero to `most`.
+        Shape of the function's result, from zero on.
 
     References
     ----------
@@ -330,10 +330,10 @@ def jackknife_interval(
     mean = mean_over_first(values)
     without = np.stack([function((count * mean - one) / (count - 1)) for one in values])
     error = np.sqrt((count - 1) * mean_over_first(np.square(without - mean_over_first(without))))
-    return _student_interval(np.minimum(function(mean), most), error, count, most)
+    return _student_interval(function(mean), error, count)
 
 
-def _student_interval(result, error, count, most):
+def _student_interval(result, error, count, most=np.inf):
     """Limits of a result, from its standard error and the count of the values behind it."""
     half = scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0) * error
     limits = result, np.maximum(result - half, 0.0), result + half

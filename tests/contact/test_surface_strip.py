@@ -1,6 +1,7 @@
 """Contact of surfaces in a strip: limits, then whole surfaces drawn and searched."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,12 +12,13 @@ from lube.contact import surface_strip
 from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_answers import COARSEST
-from lube.contact.surface_strip import StripFilm, strip_probability, surface_contact
+from lube.contact.surface_strip import StripFilm, first_contacts, surface_contact
 from lube.errors import StudyError
 from lube.grid.gap import Gap
 from lube.schema import LIMITS
 from lube.stages import film_table
 from lube.stages.tail import pair_probabilities
+from lube.statistics.confidence import jackknife_interval
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.rough_surface import field, rough_surface
 
@@ -44,8 +46,22 @@ def test_independent_rows_touch_as_by_the_binomial_distribution():
     for share in (1e-12, 0.02, 0.4):
         first = share * (1.0 - share) ** np.arange(30)
         for rows in (1, 7, 30, 1000):
-            expected = -np.expm1(rows * np.log1p(-share))
-            assert strip_probability(first, rows) == pytest.approx(expected, rel=1e-9)
+            expected = -rows * np.log1p(-share)
+            assert first_contacts(first, rows) == pytest.approx(expected, rel=1e-9)
+
+
+def test_limits_hold_the_probability_where_contact_is_nearly_certain():
+    """Rows that touch independently, and that surfaces show more or less often than they do."""
+    share, rows, held = 0.01, 1000, 0
+    certain = -np.expm1(rows * np.log1p(-share))
+    first = share * (1.0 - share) ** np.arange(30)
+    seen = np.random.default_rng(1).gamma(4.0, 0.25, (300, 24))
+    for of_surfaces in seen:
+        of_surfaces = of_surfaces[:, None] * first
+        limits = jackknife_interval(of_surfaces, partial(first_contacts, rows=rows))
+        _, lower, upper = -np.expm1(-np.array(limits))
+        held += lower < certain < upper
+    assert 0.92 < held / len(seen) < 0.98
 
 
 def test_a_formula_that_flattens_the_roughness_is_refused(spec, film, study):
