@@ -18,8 +18,8 @@ from pathlib import Path
 from lube.archive.citation import citation_file, zenodo_metadata
 from lube.archive.crate import CATALOGUE, crate_metadata
 from lube.errors import DataError, StudyError, shown
+from lube.pipeline.figure_files import origin, products
 from lube.pipeline.figures import wrong_figures
-from lube.pipeline.study_files import origin, products
 from lube.report import ON_ASSUMPTIONS, SUMMARISED
 from lube.report.pages import render
 from lube.report.summary import facts, findings

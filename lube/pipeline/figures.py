@@ -13,9 +13,9 @@ from typing import Any
 
 from lube.errors import DataError, LubeError
 from lube.pipeline.cells import datasets_of
+from lube.pipeline.figure_files import origin, products
 from lube.pipeline.notebooks import execute_notebook
 from lube.pipeline.stamps import drawn_by
-from lube.pipeline.study_files import origin, products
 from lube.storage.files import write_text
 from lube.storage.git import ROOT
 from lube.storage.netcdf import opened

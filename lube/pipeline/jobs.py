@@ -5,11 +5,13 @@ import logging
 import os
 import signal
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lube.errors import LubeError
-from lube.study.study import Study, load_study
 from lube.types import File
+
+if TYPE_CHECKING:
+    from lube.study.study import Study
 
 SILENT = "LUBE_SILENT_JOBS"
 """Environment variable by which the bar of a run keeps jobs from writing across it."""
@@ -36,7 +38,7 @@ def begin_job(log_file: File) -> None:
     logging.getLogger("lube").setLevel(logging.DEBUG)
 
 
-def study_of_job(snakemake: Any) -> Study:
+def study_of_job(snakemake: Any) -> "Study":
     """Set up the process of a job as `begin_job` does, and load the study.
 
     Parameters
@@ -49,6 +51,8 @@ def study_of_job(snakemake: Any) -> Study:
     Study
         The study.
     """
+    from lube.study.study import load_study  # figures, which need no study, start without it
+
     begin_job(snakemake.log[0])
     return load_study(**snakemake.config["study"])
 

@@ -7,8 +7,8 @@ from PIL import Image
 from written_notebooks import DRAW, write_notebook
 
 from lube.errors import LubeError
+from lube.pipeline.figure_files import origin, products
 from lube.pipeline.figures import draw_figure, paths_for, read_origin, wrong_figures
-from lube.pipeline.study_files import origin, products
 from lube.storage import provenance
 
 FIGURE = "fig99_mine"
