@@ -42,7 +42,7 @@ def mean_over_first(values: Array) -> Array:
     return sum(values) / len(values)
 
 
-def standard_error(limits: Sequence[Array]) -> Array:
+def error_of_limits(limits: Sequence[Array]) -> Array:
     """Find the standard error of a mean whose 95 % limits may be cut, such as at 0 or 1.
 
     Parameters
@@ -57,7 +57,7 @@ def standard_error(limits: Sequence[Array]) -> Array:
 
     Examples
     --------
-    >>> standard_error([np.array([0.5, 0.9]), np.array([0.4, 0.5]), np.array([0.6, 1.0])])
+    >>> error_of_limits([np.array([0.5, 0.9]), np.array([0.4, 0.5]), np.array([0.6, 1.0])])
     array([0.05, 0.2 ])
     """
     mean, lower, upper = limits
