@@ -2,14 +2,14 @@
 
 import functools
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TypeVar
 
 import numpy as np
 import xarray as xr
 
 from lube.errors import LubeError, StudyError, located, right_one, shown
-from lube.study.field_types import bounded
+from lube.study.field_types import bounded, each_once
 from lube.study.rig_settings import RIG_REALISATIONS
 from lube.threads import progress_bars
 from lube.types import Amount
@@ -62,7 +62,9 @@ def _meant(name, parameters):
     return f"did you mean {' or '.join(longer)}?" if longer else right_one(name, names)
 
 
-def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArray:
+def amount(
+    name: str, value: Amount, units: str, *, may_repeat: bool = False, **limits: float
+) -> xr.DataArray:
     """Convert an argument to numbers in the units that the study computes in.
 
     Parameters
@@ -74,6 +76,8 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
         ``([400, 800], "N")``.
     units : str
         Unit of the result.
+    may_repeat : bool, optional
+        Whether several numbers may be the same.
     **limits : float
         As in `lube.study.field_types.bounded`, in `units`.
 
@@ -98,7 +102,13 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
         for number in numbers.ravel():
             bounded(number, None if units == "1" else units, came, **limits)
         if numbers.ndim > 1 or not numbers.size:
-            raise LubeError(f"got {shown(value)}, need one number with its unit, or a list of them")
+            came, needed = value, "one number with its unit"
+            if units == "1":
+                came, needed = value[0], "one number"
+            raise LubeError(f"got {shown(came)}, need {needed}, or a list of them")
+    if not may_repeat:
+        unit = "" if units == "1" else f" {units}"
+        no_repetition(name, [f"{number:.15g}{unit}" for number in numbers.ravel()])
     return xr.DataArray(numbers, {name: numbers} if numbers.ndim else None, [name] * numbers.ndim)
 
 
@@ -154,7 +164,7 @@ def rotation_speed(speed: Amount, radius: float) -> xr.DataArray:
         If the unit is that of neither, or the speed is not above 0.
     """
     try:
-        amount("speed", speed, "m/s")
+        amount("speed", speed, "m/s", may_repeat=True)
     except LubeError:
         try:
             return amount("speed", speed, "rpm", above=0.0)
@@ -163,6 +173,20 @@ def rotation_speed(speed: Amount, radius: float) -> xr.DataArray:
     entrainment = amount("speed", speed, "m/s", above=0.0)
     rotation = entrainment * (60.0 / (2.0 * np.pi * radius))
     return rotation.assign_coords(speed=rotation) if rotation.dims else rotation
+
+
+def no_repetition(name: str, values: Iterable[str]) -> None:
+    """Refuse several names, or numbers with their units, if one of them is repeated.
+
+    Raises
+    ------
+    StudyError
+        With the first such value, and the name of the argument.
+    """
+    try:
+        each_once(tuple(values))
+    except ValueError as error:
+        raise StudyError(f"{name}: {error}") from None
 
 
 def single(values: xr.DataArray) -> float:
@@ -174,7 +198,9 @@ def single(values: xr.DataArray) -> float:
         If there are several numbers, with the name of the argument.
     """
     for name, size in values.sizes.items():
-        raise StudyError(f"{name}: got {size} values, need one")
+        several = size > 1
+        came, needed = (f"{size} values", "one") if several else ("a list of one value", "no list")
+        raise StudyError(f"{name}: got {came}, need {needed}")
     return values.item()
 
 

@@ -7,7 +7,7 @@ from typing import TypedDict, get_args
 import numpy as np
 
 from lube import types
-from lube.calculator.arguments import amount, bare_number, single
+from lube.calculator.arguments import amount, bare_number, no_repetition, single
 from lube.errors import StudyError, right_one, shown
 from lube.grid.gap import PLAIN, Gap
 from lube.study.study import Study
@@ -84,7 +84,7 @@ class Choices:
         Raises
         ------
         StudyError
-            If a study has no such choice.
+            If a study has no such choice, or a contact model is repeated.
         """
         slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
         film = {"load_sharing": load_sharing, "inlet_shear_heating": inlet_shear_heating}
@@ -93,6 +93,7 @@ class Choices:
         models = tuple(np.ravel(contact_model).tolist())
         for model in models or [contact_model]:
             _check_choice("contact_model", model, get_args(types.ContactModel))
+        no_repetition("contact_model", models)
         if inlet_meniscus is not None:
             inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
         return cls(gap, models, **film, inlet_meniscus=inlet_meniscus, slip=slip)

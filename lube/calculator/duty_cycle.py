@@ -252,5 +252,5 @@ def _column(header, values):
         units = "1"
     given = values if units is None else (values, units)
     with located("points", DataError):
-        numbers = amount(name, given, _COLUMNS[name], **limits)
+        numbers = amount(name, given, _COLUMNS[name], may_repeat=True, **limits)
     return name, xr.DataArray(numbers.values, dims="point")

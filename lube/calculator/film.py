@@ -7,15 +7,16 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import Point, checked, conditions
+from lube.calculator.arguments import Point, checked, conditions, no_repetition
 from lube.calculator.choices import FORMULA, Choices
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
-from lube.errors import StudyError, shown
+from lube.errors import StudyError, located, shown
 from lube.grid.films import film_at
 from lube.grid.plausibility import remarks
 from lube.study.rollers import RollerPair
 from lube.study.surface_checks import check_surfaces
+from lube.surfaces.rare_contact import check_stands_for_surface
 from lube.types import Amount, InletHeating, OneAmount, Values
 from lube.units import with_unit
 
@@ -139,7 +140,7 @@ def check_contact(rollers: Rollers, half_width: Values, choices: Choices) -> Non
     LubeError
         As from `lube.study.surface_checks.check_surfaces`; or that a contact is finer than the grid
         or wider than a roller's perimeter, or reaches the meniscus, or that no line stands for the
-        rollers.
+        rollers, or the lines for no surfaces that could share the load.
     """
     spec, widest = rollers.lines, 2.0 * np.max(half_width).item()
     meniscus = choices.inlet_meniscus
@@ -152,6 +153,9 @@ def check_contact(rollers: Rollers, half_width: Values, choices: Choices) -> Non
         spec.check_follows_rolling()
     if "surface" in choices.models:
         check_surfaces(spec, rollers.pair.length, widest, choices.gap)
+    elif choices.load_sharing != "none":
+        with located(f"load_sharing: got {choices.load_sharing}, need none"):
+            check_stands_for_surface(spec)
 
 
 def formula_names(film_formula: str | Sequence[str]) -> list[str]:
@@ -160,11 +164,12 @@ def formula_names(film_formula: str | Sequence[str]) -> list[str]:
     Raises
     ------
     StudyError
-        If it is neither a name nor a list of names.
+        If it is neither a name nor a list of names, or has a name twice.
     """
     formulas = np.ravel(film_formula).tolist()
     if not formulas or not isinstance(formulas[0], str):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
+    no_repetition("film_formula", formulas)
     return formulas
 
 

@@ -101,7 +101,7 @@ def plan(
     turns = amount("turns", (turns, "1"), "1", above=0.0)
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
-    models = [model] if rig is None else ["line", model]
+    models = [model] if rig is None else list(dict.fromkeys(("line", model)))
     if rig and model == "surface" and not rollers.lines.follows_rolling:
         raise StudyError(
             f"rig: got {rig!r} with ridges for which no line stands, need none: how a rig misreads "

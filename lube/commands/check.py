@@ -14,6 +14,7 @@ from lube.pipeline.command_line import changes_of, study_of_command
 from lube.pipeline.study_files import StudyFiles
 from lube.report.pages import count, render
 from lube.stages.film import film_table
+from lube.stages.tail import why_counted
 from lube.study.oil_properties import lubricant_table
 from lube.study.resolve import merged
 from lube.study.text_files import read_yaml
@@ -75,12 +76,14 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
 
 
 def _own_remarks(path, study, changes):
-    """Say what is that of the study that this one is based on, and which ranges it cannot have."""
+    """Say what is that of the study's base, why contact is not sampled, and unsuitable ranges."""
     content = read_yaml(path, StudyError)
     base, own = content.get("based_on"), merged(content, changes)
     if base and study.about.creators and "creators" not in (own.get("about") or ()):
         names = "; ".join(one.name for one in study.about.creators)
         yield f"about.creators: {base} names {names}; put in your own"
+    if reason := why_counted(study.line_spec, study.gap):
+        yield reason
     if not study.has("sensitivity"):
         return
     try:

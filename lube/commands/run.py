@@ -9,6 +9,8 @@ from typing import NoReturn
 from lube.errors import LubeError
 from lube.storage.git import ROOT
 
+_SNAKEMAKE = "import sys; from snakemake.cli import main; sys.argv[0] = 'lube run'; main()"
+"""As ``python -m snakemake``, under the name by which its help and messages call it."""
 _SIGN = "workflow/rules/study.smk"  # only the repository of lube has this file
 
 
@@ -29,7 +31,7 @@ def snakemake_command(arguments: Sequence[str]) -> list[str]:
     study, rest = [], list(arguments)
     if rest and rest[0].endswith((".yaml", ".yml")):
         study = ["--configfile", str(Path(rest.pop(0)).resolve())]
-    return [sys.executable, "-m", "snakemake", *rest, *study]
+    return [sys.executable, "-c", _SNAKEMAKE, *rest, *study]
 
 
 def repository(here: Path | None = None) -> Path:

@@ -400,7 +400,7 @@ def _settle(contact, nodes, pressure, film, steps, is_damped=True):
         profile = FilmProfile(contact, nodes, pressure, offset, flow, steps)
         while steps < last and time > _SHORTEST_SETTLING_TIME:
             steps += 1
-            change, shift = discrete.newton_step(pressure, offset, flow, time)
+            change, shift = discrete.newton_step(pressure, flow, time)
             widening = shift + discrete.deflection @ change
             # Written so that NaN counts as too large.
             small = np.abs(change).max() <= _LARGEST_CHANGE

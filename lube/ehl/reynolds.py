@@ -122,7 +122,7 @@ class DiscreteContact:
             drag_by_node=0.5 * density_slope * gap,
         )
 
-    def newton_step(self, pressure, offset, flow, settling_time):
+    def newton_step(self, pressure, flow, settling_time):
         """Take one step of Newton's method towards the film after a settling time.
 
         The oil that leaves a node is the oil that enters it, less the oil that fills the widening

@@ -99,7 +99,8 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     """
     film = film.isel(film_formula=0, missing_dims="ignore")
     moduli = rollers.first.young_modulus, rollers.second.young_modulus
-    width, shortest = 2.0 * film["contact_half_width"].min().item(), 2.0 * math.pi / lines.q_max
+    widths, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
+    width, widest = widths.min().item(), widths.max().item()
     pressure = film["hertz_pressure"].max().item()
     films = film["film_thickness"]
     waves, points = width / shortest, shortest / lines.spacing
@@ -116,6 +117,9 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"Hertz pressure: up to {with_unit(pressure, 'Pa', 3)}; gears and bearings have less than "
         "2.5 GPa, hardened steel yields from some 3 GPa on, and the model is "
         "elastic": pressure > 2.5e9,
+        f"length of the rollers: {with_unit(rollers.length, 'm', 3)}, but the contact is up to "
+        f"{with_unit(widest, 'm', 3)} wide; the model is for a line contact, longer than "
+        "wide": rollers.length < widest,
         f"film: {_range(films, 'm')}; most are from 10 nm to 10 µm, so units may be "
         "wrong": films.min() < 2e-9 or films.max() > 2e-5,
         f"contact width: {waves:.2g} times the shortest wave at the smallest force; with less than "

@@ -19,7 +19,7 @@ from lube.inference.record_curves import RecordCurves, curve_offsets
 from lube.inference.surface_scatter import revolution_size, surface_scatter
 from lube.physics.excursions import expected_contacts, sharp_surface_summit_share
 from lube.schema import LIMITS, values_with_limits, with_dims
-from lube.statistics.confidence import standard_error
+from lube.statistics.confidence import error_of_limits
 from lube.statistics.curves import contact_curve
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import Study
@@ -237,5 +237,5 @@ def reading_errors(surfaces: xr.Dataset, shares: Array) -> Array:
     # The thickest film first: its probability is the least.
     thickest_first = surfaces.isel(curve_lambda_ratio=slice(None, None, -1))
     limits = [thickest_first[f"curve_probability{end}"].values.T for end in LIMITS]
-    rows = zip(shares, limits[0], standard_error(limits), strict=True)
+    rows = zip(shares, limits[0], error_of_limits(limits), strict=True)
     return np.array([np.interp(*row) for row in rows])

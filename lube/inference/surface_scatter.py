@@ -22,7 +22,7 @@ from lube.contact.pair_scatter import (
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
-from lube.statistics.confidence import standard_error
+from lube.statistics.confidence import error_of_limits
 from lube.statistics.one_pair import prediction_limits, scatter_ratio
 from lube.surfaces.rough_surface import longest_waves
 from lube.surfaces.synthetic import LineSpecLike
@@ -73,7 +73,7 @@ def surface_prediction(
     tuple of numpy.ndarray
         Lower and upper limit.
     """
-    noise = np.hypot(noise, standard_error(limits))
+    noise = np.hypot(noise, error_of_limits(limits))
     lower, upper = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
     # No pair is better known than the mean, whose limits are not as far from it near 0 and 1.
     return np.minimum(lower, limits[1]), np.maximum(upper, limits[2])

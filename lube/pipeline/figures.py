@@ -122,8 +122,9 @@ def read_origin(figure: str, folder: File) -> dict[str, Any]:
     """
     path = Path(folder) / origin(figure)
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        content = json.loads(path.read_text(encoding="utf-8"))
+        return content | {name: dict(content[name]) for name in ("datasets", "products")}
+    except (OSError, ValueError, KeyError, TypeError):
         raise DataError(f"{path}: missing or damaged") from None
 
 

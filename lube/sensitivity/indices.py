@@ -21,6 +21,7 @@ from SALib.sample import sobol as sobol_sample
 from lube.types import Array
 
 BASE_SAMPLES = 1024
+"""Base samples of Sobol' indices, a power of 2."""
 TRAJECTORIES = 760
 """Paths of Morris' design; each changes every factor once. Twice the pairs of `LEVELS`."""
 LEVELS = 20
@@ -39,7 +40,6 @@ def sobol(
     predict: Callable[[Array], Array],
     seed: int,
     groups: Sequence[str] | None = None,
-    base_samples: int = BASE_SAMPLES,
 ) -> tuple[dict[str, Array], Array]:
     """Compute Sobol' indices of all operating points.
 
@@ -54,8 +54,6 @@ def sobol(
     groups : sequence of str, optional
         Group of each factor; the indices are then those of groups, in the order of their names'
         first use.
-    base_samples : int, optional
-        Number of base samples, a power of 2.
 
     Returns
     -------
@@ -64,11 +62,11 @@ def sobol(
         ``first_order_error`` and ``total_effect_error``, of shape (factors or groups, points);
         NaN where the film of a sample is not known, or nothing changes.
     values : numpy.ndarray
-        Values of independent samples among them, shape (2 base samples, points).
+        Values of independent samples among them, shape (2 `BASE_SAMPLES`, points).
     """
     problem = _problem(names, groups)
     design = partial(sobol_sample.sample, calc_second_order=False, seed=seed)
-    values = predict(design(problem, base_samples))
+    values = predict(design(problem, BASE_SAMPLES))
     keys = {"first_order": "S1", "first_order_error": "S1_conf"}
     keys |= {"total_effect": "ST", "total_effect_error": "ST_conf"}
     # SALib takes a seed of 0 for none.
@@ -82,7 +80,7 @@ def sobol(
         return np.array([found[key] for key in keys.values()])
 
     found = np.stack([of_point(column) for column in values.T], axis=-1)
-    blocks = values.reshape(base_samples, -1, values.shape[1])
+    blocks = values.reshape(BASE_SAMPLES, -1, values.shape[1])
     return dict(zip(keys, found, strict=True)), np.concatenate([blocks[:, 0], blocks[:, -1]])
 
 

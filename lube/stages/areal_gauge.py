@@ -13,7 +13,7 @@ import xarray as xr
 from lube.grid.operating_points import at_slip
 from lube.inference.record_curves import gauged_ratios
 from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
-from lube.statistics.confidence import standard_error
+from lube.statistics.confidence import error_of_limits
 from lube.statistics.curves import falling_curve
 from lube.study.study import Study
 from lube.types import Datasets
@@ -78,4 +78,4 @@ def _curve(film, areal, width):
     trials = np.nan_to_num(trials.values.ravel()[np.argsort(ratios)])
     curve = falling_curve(np.log(np.sort(ratios)), found[0], trials, RESOLUTION)
     rising = np.argsort(found[0])
-    return curve, found[0][rising], standard_error(found)[rising]
+    return curve, found[0][rising], error_of_limits(found)[rising]

@@ -122,15 +122,33 @@ def measured_experiment(manifest: Manifest, study: Study) -> xr.Dataset:
             rows.append(_row_of_entry(entry, study, remarks))
         except LubeError as error:
             refused.append(str(error))
-    restless = [row["record"] for row in rows if _changes_by_the_turn(row, study)]
-    if restless:
-        more = f" and {len(restless) - 1} more" if len(restless) > 1 else ""
+    if restless := [row["record"] for row in rows if _changes_by_the_turn(row, study)]:
         remarks.append(
-            f"{restless[0]}{more}: rollers of one size without slip repeat themselves by the turn, "
-            f"but here none is seen to, at any speed within {100.0 * SPAN:g} % of the one stated: "
-            "the speed may be wrong, or the roughness changes (rig.drift)"
+            f"{_first_of(restless)}: rollers of one size without slip repeat themselves by the "
+            f"turn, but here none is seen to, at any speed within {100.0 * SPAN:g} % of the one "
+            "stated: the speed may be wrong, or the roughness changes (rig.drift)"
+        )
+    passages = [(row, _passage_time(row, study)) for row in rows]
+    if short := [(row, time) for row, time in passages if row.get("duration", np.inf) < time]:
+        (row, time), names = short[0], [row["record"] for row, _ in short]
+        remarks.append(
+            f"{_first_of(names)}: {with_unit(row['duration'], 's', 3)} long, but the rollers need "
+            f"{with_unit(time, 's', 3)} to move by the width of the contact: so short a record "
+            "shows whether they touch at one place, and not how often"
         )
     return _dataset(rows, study, manifest.origin, refused, remarks)
+
+
+def _first_of(names):
+    """First of some records, and the number of the others."""
+    return names[0] + (f" and {len(names) - 1} more" if len(names) > 1 else "")
+
+
+def _passage_time(row, study):
+    """Time in which the rollers move by the width of the contact at a record, s."""
+    rollers = study.rollers
+    speed = 2.0 * np.pi * rollers.first.radius * row["speed"] / 60.0
+    return 2.0 * rollers.contact_half_width(row["force"]) / speed
 
 
 def _changes_by_the_turn(row, study):

@@ -12,8 +12,11 @@ from lube.types import Datasets
 
 LAYER_FACTORS = 2.0 ** np.arange(-3, 4)
 """Strengths of the boundary layer in the coarse map, relative to the study's."""
+LEVELS = (40, 9)
+"""Numbers of levels over the range of the film table: of the lambda ratio at equal ratios, and of
+the contact width at equal steps."""
 LAYER_LEVELS = (12, 3)
-"""Numbers of levels of the lambda ratio and of the contact width in the coarse map."""
+"""The same in the coarse map."""
 THINNER_FILMS = np.geomspace(0.3, 1.0, 13)[:-1]
 """Lambda ratios of the map below the lowest of the film table, relative to it."""
 
@@ -32,8 +35,6 @@ def contact_map(
     lines: xr.Dataset,
     film: xr.Dataset,
     boundary_layer: BoundaryLayer,
-    lambda_levels: int = 40,
-    width_levels: int = 9,
 ) -> xr.Dataset:
     """Map the probabilities in pure rolling over lambda ratio and contact width.
 
@@ -46,9 +47,6 @@ def contact_map(
     ----------
     lines, film, boundary_layer
         As in `lube.stages.contact.contact_statistics`.
-    lambda_levels, width_levels : int, optional
-        Numbers of levels over the range of the film table: of the lambda ratio at equal
-        ratios, and of the contact width at equal steps.
 
     Returns
     -------
@@ -57,7 +55,7 @@ def contact_map(
         lambda_ratio, contact_width), and of breakthrough over (realisation, layer_strength,
         layer_lambda_ratio, layer_contact_width).
     """
-    ratios, widths = _levels(film, lambda_levels, width_levels)
+    ratios, widths = _levels(film, *LEVELS)
     ratios = np.concatenate([ratios[0] * THINNER_FILMS, ratios])
     mapped = _map(lines, film, boundary_layer, (ratios, widths), ("lambda_ratio", "contact_width"))
     mapped["layer_breakthrough_probability"] = _layer_map(lines, film, boundary_layer)

@@ -9,11 +9,13 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.windows import FLATTENED, ContactWindows, study_windows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
+from lube.grid.gap import Gap
 from lube.grid.operating_points import over_contact_models, surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, mean_interval
 from lube.statistics.sample_size import independent_windows
+from lube.study.line_spec import LineSpec
 from lube.study.study import Study
 from lube.surfaces.rare_contact import WINDOWS, check_gaussian
 from lube.surfaces.spectra import pair_moments
@@ -40,8 +42,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty unless the lines
-        are flattened by a formula or not Gaussian; then it says so, and all values are NaN. In
+        The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is that of `why_counted`; if
+        it is not empty, all values are NaN. In
         uneven windows and on surfaces the fraction of pairs with a breakthrough and the time to the
         first one are estimated from the probability and the duration of a breakthrough. The theory
         for high films holds for lines as drawn.
@@ -72,7 +74,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     fraction of pairs with any is :math:`1 - e^{-\mu}`.
     """
     film = inputs["film"].transpose("film_formula", *POINT_DIMS, ...)
-    remark = _why_not(study.line_spec, study.gap)
+    remark = why_counted(study.line_spec, study.gap)
     if remark or not study.line_spec.follows_rolling:
         table = _unknown(film, np.asarray(study.slips, float))
     else:
@@ -198,7 +200,7 @@ def pair_probabilities(
         in ``tail.nc``.
     """
     spec, gap = pair.spec, pair.gap
-    if remark := _why_not(spec, gap):
+    if remark := why_counted(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
         names = *PROBABILITIES, "breakthrough_rate"
         return xr.Dataset(dict.fromkeys(names, unknown), attrs={"remarks": remark})
@@ -233,15 +235,28 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
     return limits.assign(breakthrough_probability_upper=breakthrough.copy(data=most))
 
 
-def _why_not(spec, gap):
-    """Say in one line why contact cannot be sampled; nothing if it can."""
-    if gap.is_flattened:
-        return FLATTENED
+def why_counted(spec: LineSpec, gap: Gap) -> str:
+    """Say why contact of lines is counted alone, and not sampled at any rarity.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        The lines.
+    gap : Gap
+        How film and roughness make up the gap.
+
+    Returns
+    -------
+    str
+        One line; empty if contact can be sampled.
+    """
     try:
         check_gaussian(spec)
     except StudyError as error:
-        return str(error)
-    return ""
+        reason = str(error)
+    else:
+        reason = FLATTENED if gap.is_flattened else ""
+    return reason and f"contact is counted in realisations, not sampled: {reason}"
 
 
 def _unknown(film, slide_to_roll_ratio):

@@ -42,7 +42,7 @@ def mean_over_first(values: Array) -> Array:
     return sum(values) / len(values)
 
 
-def standard_error(limits: Sequence[Array]) -> Array:
+def error_of_limits(limits: Sequence[Array]) -> Array:
     """Find the standard error of a probability of contact of surfaces.
 
     Parameters
@@ -59,7 +59,7 @@ def standard_error(limits: Sequence[Array]) -> Array:
     Examples
     --------
     >>> rare_and_frequent = np.array([[0.02, 0.9], [0.0, 0.8], [0.06, 0.95]])
-    >>> standard_error(rare_and_frequent).round(3)
+    >>> error_of_limits(rare_and_frequent).round(3)
     array([0.02 , 0.035])
     """
     mean, lower, upper = (-np.log1p(-np.minimum(limit, 1.0 - 1e-12)) for limit in limits)

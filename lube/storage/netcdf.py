@@ -113,7 +113,8 @@ def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
     if kind not in FILES:
         raise DataError(f"kind: got {shown(kind)}, {right_one(f'{kind}', FILES)}")
     if not path.is_file():
-        raise DataError(f"{path}: no such file, need a {kind} dataset")
+        came = "a folder" if path.is_dir() else "no such file"
+        raise DataError(f"{path}: {came}, need a {kind} dataset")
     with opened(path) as dataset:
         check(dataset, kind, path)
         if study is not None:

@@ -343,6 +343,9 @@ def validate(
     except ValidationError as error:
         # A misspelt key comes first: the missing key only follows from it.
         mistakes = sorted(error.errors(), key=lambda mistake: mistake["type"] not in _UNKNOWN)
+        # A list whose entries are refused is reported as too short as well.
+        entries = {one["loc"][:depth] for one in mistakes for depth in range(len(one["loc"]))}
+        mistakes = [m for m in mistakes if m["type"] != "too_short" or m["loc"] not in entries]
         more = f" (and {len(mistakes) - 1} more)" if len(mistakes) > 1 else ""
         line = _as_written(_in_one_line(mistakes[0], model), content)
         raise error_type(f"{where}: {line}{more}") from None

@@ -77,13 +77,17 @@ def sum_of_lines(spec: LineSpecLike, lags: int) -> tuple[float, Pair]:
     return np.sqrt(variance), tuple(line / variance for line in lines)
 
 
-def check_gaussian(spec: LineSpecLike) -> None:
+def check_gaussian(
+    spec: LineSpecLike, why: str = "importance sampling is for Gaussian lines"
+) -> None:
     """Refuse lines whose heights are not Gaussian.
 
     Parameters
     ----------
     spec : LineSpecLike
         Parameters of the lines.
+    why : str, optional
+        What needs such lines, for the message.
 
     Raises
     ------
@@ -93,13 +97,12 @@ def check_gaussian(spec: LineSpecLike) -> None:
     for line in spec.lines:
         if line.heights is not None:
             raise StudyError(
-                "rollers: got a measured line, need lines drawn from a spectrum: importance "
-                "sampling is for Gaussian lines"
+                f"rollers: got a measured line, need lines drawn from a spectrum: {why}"
             )
         if not line.is_gaussian:
             raise StudyError(
                 f"roughness: got a skewness of {line.skewness:g} and a kurtosis of "
-                f"{line.kurtosis:g}, need 0 and 3: importance sampling is for Gaussian lines"
+                f"{line.kurtosis:g}, need 0 and 3: {why}"
             )
 
 
@@ -116,7 +119,7 @@ def check_stands_for_surface(spec: LineSpecLike) -> None:
     StudyError
         As from `check_gaussian`, or if a line was measured along rolling.
     """
-    check_gaussian(spec)
+    check_gaussian(spec, "the surfaces that lines stand for are Gaussian")
     if not all(line.isotropic for line in spec.lines):
         raise StudyError(
             "rollers: got a topography taken along rolling, need an isotropic one or one with a "

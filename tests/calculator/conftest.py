@@ -7,6 +7,7 @@ from studies import OIL
 
 from lube import Oil, Rollers
 from lube.calculator import bands, film_search
+from lube.inference import planning
 from lube.stages import tail
 
 
@@ -39,5 +40,5 @@ def few_samples():
 @pytest.fixture
 def few_pairs(monkeypatch):
     """Sample contact on few pairs: where all that is compared is of the same pairs."""
-    for module in (tail, film_search):
+    for module in (tail, film_search, planning):
         monkeypatch.setattr(module, "PAIRS", 8)

@@ -182,13 +182,31 @@ def test_contact_that_no_realisation_sees_has_a_probability(rollers, oil):
     assert 0.0 < lower < upper < found["breakthrough_probability_upper"]
 
 
-def test_heights_that_are_not_gaussian_have_no_tail(oil):
-    worn = lube.Rollers(
-        "50 mm", "0.2 um", points=50_000, shortest_wavelength="60 um", skewness=-1.0, kurtosis=5.0
-    )
-    found = lube.contact_probability(worn, oil, **POINT, realisations=1)
+@pytest.fixture(scope="module")
+def worn():
+    """Rollers whose heights are not Gaussian."""
+    heights = {"skewness": -1.0, "kurtosis": 5.0}
+    return lube.Rollers("50 mm", "0.2 um", points=50_000, shortest_wavelength="60 um", **heights)
+
+
+@pytest.mark.parametrize("deformation", ["none", "computed"])
+def test_heights_that_are_not_gaussian_have_no_tail(worn, oil, deformation):
+    choices = {"realisations": 1, "roughness_deformation": deformation}
+    found = lube.contact_probability(worn, oil, **POINT, **choices)
     assert np.isnan(found["tail_breakthrough_probability"])
-    assert found.attrs["remarks"].startswith("roughness: got a skewness of -1")
+    remark, *_ = found.attrs["remarks"].splitlines()
+    assert remark.startswith("contact is counted in realisations, not sampled: roughness: got a")
+    assert remark.endswith("importance sampling is for Gaussian lines")
+
+
+@pytest.mark.parametrize("answer", [lube.contact_probability, lube.trace])
+def test_heights_that_are_not_gaussian_share_no_load(worn, oil, answer):
+    with pytest.raises(LubeError) as error:
+        answer(worn, oil, **POINT, load_sharing="iterated")
+    assert str(error.value) == (
+        "load_sharing: got iterated, need none: roughness: got a skewness of -1 and a kurtosis of "
+        "5, need 0 and 3: the surfaces that lines stand for are Gaussian"
+    )
 
 
 def test_one_point_is_a_point_of_the_grid(rollers, oil, busy):
@@ -217,6 +235,11 @@ def test_threads_leave_the_options_of_xarray_as_they_were(rollers, oil):
         ({"temperature": "300 K"}, "got 26.85 degC, need 40 to 100 degC"),
         ({"film_formula": "moe"}, "unknown film formula 'moe', did you mean 'moes'?"),
         ({"film_formula": []}, "film_formula: got [], need a name, or a list of them"),
+        ({"film_formula": ["paper"] * 2}, "film_formula: got paper repeatedly, need it once"),
+        ({"contact_model": ["line"] * 2}, "contact_model: got line repeatedly, need it once"),
+        ({"force": ["800 N", "0.8 kN"]}, "force: got 800 N repeatedly, need it once"),
+        ({"speed": ["1 m/s", "1 m/s"]}, "speed: got 1 m/s repeatedly, need it once"),
+        ({"temperature": ([60, 80, 60], "degC")}, "got 60 degC repeatedly, need it once"),
         ({"film_formula": 3}, "film_formula: got 3, need a name, or a list of them"),
         ({"oil": "water"}, "oil: got 'water', need lube.Oil(...)"),
         ({"rollers": None}, "rollers: got None, need lube.Rollers(...)"),

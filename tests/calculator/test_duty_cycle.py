@@ -135,7 +135,7 @@ def test_heights_that_are_not_gaussian_are_counted_only(oil):
     found = lube.duty(POINTS, worn, oil, realisations=1)
     assert np.isnan(found["tail_breakthrough_probability"]).all()
     assert np.isnan(found["whole_tail_rate"]) and not np.isnan(found["whole_probability"])
-    assert found.attrs["remarks"].startswith("roughness: got a skewness of -1")
+    assert found.attrs["remarks"].startswith("contact is counted in realisations, not")
 
 
 def test_what_is_unlikely_to_be_meant_at_a_point_is_remarked(oil):

@@ -86,6 +86,8 @@ def test_the_trace_of_an_insulator_has_no_resistance(oil):
 def test_a_trace_is_of_one_point(rollers, oil):
     with pytest.raises(LubeError, match="speed: got 2 values, need one"):
         lube.trace(rollers, oil, **POINT | {"speed": ["1 rpm", "2 rpm"]})
+    with pytest.raises(LubeError, match="force: got a list of one value, need no list"):
+        lube.trace(rollers, oil, **POINT | {"force": ([800], "N")})
 
 
 def test_a_trace_needs_a_contact_that_the_grid_resolves(rollers, oil):

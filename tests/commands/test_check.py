@@ -84,6 +84,11 @@ def test_the_load_share_is_that_under_the_film_of_the_study():
         ),
         ("roughness={points: 250000}", "shortest wave: 12.6 µm"),
         ("roughness={points: 250000, shortest_wavelength: 3.1416 um}", "grid: 2.5 points in"),
+        ("rollers={length: 0.2 mm}", "length of the rollers: 200 µm, but the contact is up to"),
+        (
+            "roughness={skewness: -1, kurtosis: 5}",
+            "contact is counted in realisations, not sampled: roughness: got a skewness of -1",
+        ),
         ("rollers={first: {rms_roughness: 3 um}}", "load share: at 125 of 125 operating points"),
     ],
 )

@@ -14,12 +14,15 @@ from lube.errors import LubeError
 
 def test_the_study_comes_last_so_that_targets_and_options_are_snakemakes(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    snakemake = [sys.executable, "-m", "snakemake"]
-    assert snakemake_command(["mine.yaml", "archive", "-n"]) == [
-        *(*snakemake, "archive", "-n"),
-        *("--configfile", str(tmp_path / "mine.yaml")),
-    ]
-    assert snakemake_command(["--dry-run"]) == [*snakemake, "--dry-run"]
+    expected = ["archive", "-n", "--configfile", str(tmp_path / "mine.yaml")]
+    assert snakemake_command(["mine.yaml", "archive", "-n"])[3:] == expected
+    assert snakemake_command(["--dry-run"])[3:] == ["--dry-run"]
+
+
+def test_the_help_is_that_of_snakemake_under_the_name_of_the_command():
+    command = snakemake_command(["--help"])
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert printed.startswith("usage: lube run ") and "--configfile" in printed
 
 
 def test_the_repository_is_that_of_the_current_folder_or_of_the_package(monkeypatch, tmp_path):

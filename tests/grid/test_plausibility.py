@@ -33,6 +33,14 @@ def test_the_contact_model_finds_the_expected_share_of_the_load(study, film, mak
     assert np.abs(distance).max() < 4.0
 
 
+def test_rollers_shorter_than_the_contact_is_wide_are_remarked(study, film):
+    widest = 2.0 * film["contact_half_width"].max().item()
+    for part, is_said in ((0.99, True), (1.01, False)):
+        short = study.rollers.model_copy(update={"length": part * widest})
+        found = remarks(film, study.line_spec, short)
+        assert any(line.startswith("length of the rollers: ") for line in found) == is_said
+
+
 @pytest.mark.parametrize("name", ["rms_deformation", "surface_rms_deformation"])
 def test_roughness_that_the_oil_changes_too_much_is_remarked(study, film, name):
     question = study.line_spec, study.rollers

@@ -108,8 +108,9 @@ def test_a_figure_of_another_dataset_is_named(drawn):
 def test_a_figure_without_a_readable_origin_is_named(drawn):
     path = drawn / origin(FIGURE)
     expected = [f"{path}: missing or damaged{REMEDY}"]
-    path.write_text("no JSON")
-    assert list(wrong_figures([FIGURE], drawn, drawn)) == expected
+    for text in ("no JSON", "[]", "{}", '{"datasets": {}}', '{"datasets": {}, "products": 1}'):
+        path.write_text(text)
+        assert list(wrong_figures([FIGURE], drawn, drawn)) == expected
     path.unlink()
     assert list(wrong_figures([FIGURE], drawn, drawn)) == expected
 

@@ -28,7 +28,7 @@ def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
         files.check_targets(["results/mine/surface.nc"], {})
     path = paper_with(("roughness_deformation", "venner-1997"), ("name", "mine"))
     files = StudyFiles(load_study(path), path, {})
-    for target in ("areal_contact", "./results/mine/areal.nc"):
+    for target in ("areal_contact", "./results/mine/areal.nc", "sensitivity"):
         with pytest.raises(SystemExit, match=f"got the target {target}, need .*tion: none"):
             files.check_targets([target], {})
 

@@ -15,6 +15,7 @@ from lube.kernels.layer import layer_factor
 from lube.kernels.strips import strip_statistics
 from lube.schema import OPERATING_DIMS
 from lube.stages import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
+from lube.stages import master as module
 from lube.surfaces.synthetic import draw_realisation
 
 MEANS = (
@@ -227,7 +228,7 @@ def test_each_slip_has_the_film_that_heating_leaves_there(lines, film, layer):
     name = "geometric_contact_probability"
     more = (contact[name] - cold[name]).sel(slide_to_roll_ratio=0.3)
     assert (more >= 0.0).all() and more.sum() > 0.0
-    mapped = contact_map(lines, heated, layer, 4, 2)
+    mapped = contact_map(lines, heated, layer)
     assert mapped["lambda_ratio"].min() == pytest.approx(0.3 * heated["lambda_ratio"].min().item())
 
 
@@ -282,7 +283,9 @@ def test_mean_overlap_is_that_of_a_gaussian_line(ensemble):
 
 @pytest.fixture(scope="module")
 def mapped(lines, film, layer):
-    return contact_map(lines, film, layer, lambda_levels=6, width_levels=4)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "LEVELS", (6, 4))
+        return contact_map(lines, film, layer)
 
 
 def test_the_map_spans_all_films_and_windows_of_the_study_and_thinner_films(mapped, film):

@@ -312,6 +312,21 @@ def test_less_than_a_window_without_contact_excludes_little(measured, tmp_path):
         assert np.isnan(here["repeatability"])
 
 
+def test_records_shorter_than_the_passage_of_a_contact_are_remarked_on(measured, tmp_path, study):
+    written(tmp_path / "some.csv", np.full(5, 1e5), 1e-4)
+    width = 2.0 * study.rollers.contact_half_width(800.0)
+    passage = width / (2.0 * np.pi * study.rollers.first.radius * 100.0 / 60.0)
+    assert 5e-4 < passage < 7e-4
+    remark = measured("some.csv,800,100,40").remarks
+    needed = f"500 µs long, but the rollers need {1e6 * passage:.0f} µs to move by the width"
+    assert remark.startswith(f"some.csv (manifest.csv: line 2): {needed}")
+    two = measured("some.csv,800,100,40", "half.csv,800,100,40", "some.csv,800,90,40").remarks
+    assert two.splitlines()[-1].startswith(
+        "some.csv (manifest.csv: line 2) and 1 more: 500 µs long, but"
+    )
+    assert measured("some.csv,800,200,40").remarks == ""
+
+
 def test_many_turns_of_equal_rollers_without_contact_exclude_no_more_than_one(measured, tmp_path):
     """Only slip brings new windows."""
     uppers = {}

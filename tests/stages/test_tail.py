@@ -29,6 +29,7 @@ from lube.surfaces.rare_contact import draw_pair
 
 SEED = 1
 RATIOS = (0.0, -0.1, 0.5)
+COUNTED = "contact is counted in realisations, not sampled"
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 
 
@@ -87,7 +88,7 @@ def rare(make_tail, few):
 def test_lines_that_the_oil_flattens_are_refused_in_words(few, make_tail):
     found = make_tail(few, RATIOS, roughness_deformation="venner-1997")
     assert found.attrs["remarks"].startswith(
-        "roughness_deformation: got venner-1997, need none or computed"
+        f"{COUNTED}: roughness_deformation: got venner-1997, need none or computed"
     )
     assert all(np.isnan(found[name]).all() for name in found.data_vars)
 
@@ -401,8 +402,8 @@ def test_lines_that_are_not_gaussian_have_no_value_and_a_remark(coarse, few, tai
     rollers = worn.rollers.model_copy(update={"second": second})
     found = make(worn.model_copy(update={"rollers": rollers}), {"film": few})
     assert found.attrs["remarks"] == (
-        "roughness: got a skewness of -1 and a kurtosis of 5, need 0 and 3: importance sampling is "
-        "for Gaussian lines"
+        f"{COUNTED}: roughness: got a skewness of -1 and a kurtosis of 5, need 0 and 3: importance "
+        "sampling is for Gaussian lines"
     )
     assert tail.attrs["remarks"] == ""
     for name, values in tail.data_vars.items():

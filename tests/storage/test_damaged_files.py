@@ -17,8 +17,8 @@ def refusal(path, kind):
 
 
 def test_a_missing_file_and_a_folder_are_named(tmp_path):
-    for path in (tmp_path / "film.nc", tmp_path):
-        assert "no such file, need a film dataset" in refusal(path, "film")
+    for path, came in ((tmp_path / "film.nc", "no such file"), (tmp_path, "a folder")):
+        assert f": {came}, need a film dataset" in refusal(path, "film")
 
 
 def test_a_truncated_file_is_refused(files, tmp_path):

@@ -3,7 +3,7 @@
 from typing import Annotated
 
 import pytest
-from pydantic import BeforeValidator, create_model
+from pydantic import BeforeValidator, Field, create_model
 
 from lube.errors import LubeError, RecordError, StudyError
 from lube.study.field_types import (
@@ -130,6 +130,13 @@ def test_a_misspelt_key_is_refused_with_the_nearest_right_one():
         with pytest.raises(StudyError) as caught:
             validate(model, content, "file.yaml", StudyError)
         assert str(caught.value) == f"file.yaml: {line}"
+
+
+def test_a_list_of_one_mistaken_entry_is_one_mistake():
+    several = Annotated[tuple[Slug, ...], Field(min_length=2)]
+    assert "(and" not in refusal(several, ["good", "Bad"])
+    assert "(and 1 more)" in refusal(several, ["Bad", "Worse"])
+    assert refusal(several, ["good"]).endswith("got ['good'], need 2 or more entries")
 
 
 def test_a_missing_key_is_named_and_further_mistakes_are_counted():
