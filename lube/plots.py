@@ -9,6 +9,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from itertools import cycle
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -406,6 +407,13 @@ def panel_letters(axes: Iterable[Axes]) -> None:
     """
     for letter, panel in zip("abcdefghijklmnop", np.ravel(list(axes)), strict=False):
         panel.set_title(f"({letter}) {panel.get_title(loc='left')}".strip(), loc="left")
+
+
+def around(marker: str) -> dict[str, Any]:
+    """Style of a black mark around points, such as those of `lube.grid.model_limits.doubts`."""
+    size = {"D": 6, "*": 9}.get(marker, 7)
+    look = {"mfc": "none", "mec": "black", "mew": 0.7, "ms": size}
+    return {"linestyle": "none", "marker": marker} | look
 
 
 def interval_bars(

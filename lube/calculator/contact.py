@@ -165,7 +165,7 @@ def contact_probability(
     if assumed.wanted:
         samples = assumed.probabilities(conditions_of(table, choices))
         found = found.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
-    return with_remarks(found, table, rollers)
+    return with_remarks(found, table, rollers, choices.models)
 
 
 def of_surface(

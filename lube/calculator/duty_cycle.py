@@ -163,7 +163,7 @@ def duty(
         of_cycle = (samples * share).sum("point", skipna=False)
         whole |= assumed.limits(of_cycle, "whole_assumed_probability")
     found = columns | {"share": share} | dict(parts.data_vars) | whole
-    found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers)
+    found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers, choices.models)
     for name in labels.keys() & found.variables.keys():
         raise DataError(f"points: got the column {name!r}, which the answer has, need another name")
     return Answer(labels | dict(found.data_vars), found.coords, found.attrs)

@@ -212,7 +212,9 @@ def film_of_oil(
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 
-def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answer:
+def with_remarks(
+    found: xr.Dataset, table: xr.Dataset, rollers: Rollers, models: Sequence[str] = ("line",)
+) -> Answer:
     """Answer in customary units, with its remarks and those of `lube check`.
 
     Parameters
@@ -223,13 +225,15 @@ def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answ
         The film table that it comes from.
     rollers : Rollers
         The two rollers.
+    models : sequence of str, optional
+        Contact models of the answer.
 
     Returns
     -------
     Answer
         With the attribute ``remarks``, one line for each remark.
     """
-    notes = [found.attrs.get("remarks"), *remarks(table, rollers.lines, rollers.pair)]
+    notes = [found.attrs.get("remarks"), *remarks(table, rollers.lines, rollers.pair, models)]
     if halved := int((table.get("inlet_shear_heating_factor", xr.DataArray(1.0)) < 0.5).sum()):
         notes.append(
             f"inlet_shear_heating: at {halved} operating points the film is less than half as "

@@ -105,6 +105,15 @@ class FilmSearch:
         is_rising : bool, optional
             Whether the film grows with the condition. Where heating at the inlet makes it shrink
             again, levels beyond the thickest film are left out.
+
+        Returns
+        -------
+        films : dict
+            As from `films`.
+        levels : numpy.ndarray
+            The level and its limits.
+        table : xarray.Dataset
+            Film table at the film found, or the one next to it that was tried.
         """
         plain = replace(self._choices, gap=PLAIN)
         whole = table(levels, plain)
@@ -127,7 +136,8 @@ class FilmSearch:
         ends = ratios[known[[0, -1]]]
         films = self.films(whole["contact_half_width"].item(), points_at, table_at, ends)
         thickness, levels = whole["film_thickness"].values[known], levels[known]
-        return films, _reached(films, thickness, levels, tried, is_rising)
+        reached = _reached(films, thickness, levels, tried, is_rising)
+        return films, reached, table_at(np.clip(films["lambda_ratio"][:1], *ends))
 
     def films(self, half_width, points_at, table_at=None, ends=(0.0, np.inf), own=None):
         """Find the films at which the probability, its lower and its upper limit equal the share.

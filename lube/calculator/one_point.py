@@ -6,7 +6,7 @@ from lube import types
 from lube.calculator.answers import Answer, described
 from lube.calculator.arguments import checked, conditions, one_name, single
 from lube.calculator.choices import FORMULA, SEED, Choices
-from lube.calculator.film import check_contact, film_in_si, film_model
+from lube.calculator.film import check_contact, film_in_si, film_model, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.contact.rough_pair import roughness_batch
@@ -57,7 +57,8 @@ def trace(
         ``contact_length`` (um) and ``contact_resistance`` (ohm) over time (ms). The resistance
         is infinite without contact. For the surface the length is the sum of the diameters of all
         contacts whose layer is broken; also the numbers ``contacts`` and ``breakthroughs``, and
-        ``contact_length_at`` over roller_position (um).
+        ``contact_length_at`` over roller_position (um). The attribute ``remarks`` is as in
+        `contact_probability`.
 
     Raises
     ------
@@ -78,17 +79,19 @@ def trace(
     slip = choices.slip
     formula = one_name("film_formula", film_formula)
     one = _one_point(rollers, oil, force, speed, temperature)
-    if contact_model == "surface":
+    if model == "surface":
         film = film_in_si(rollers, oil, force, speed, temperature, formula, choices)
         return _surface_trace(rollers, film, rollers.rough_pair(seed, gap), slip)
     check_contact(rollers, rollers.pair.contact_half_width(*one[2]), choices)
-    model = film_model(rollers, choices) | {"slide_to_roll_ratio": [slip]}
-    table = film_table(*one, [formula], **model)
+    options = film_model(rollers, choices) | {"slide_to_roll_ratio": [slip]}
+    table = film_table(*one, [formula], **options)
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     lines = roughness_batch(rollers.lines, seed, [0])
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity, gap)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
-    return described(found[names].isel(operating_point=0).drop_attrs())
+    if inlet_shear_heating == "none":
+        del table["inlet_shear_heating_factor"]
+    return with_remarks(found[names].isel(operating_point=0).drop_attrs(), table, rollers)
 
 
 def _surface_trace(rollers, film, pair, slip):
@@ -98,7 +101,8 @@ def _surface_trace(rollers, film, pair, slip):
     found = found.assign_coords(time=found["time"] / film["entrainment_speed"].item())
     resistance = contact_resistance(found["contact_length"].values, rollers.resistivity)
     found = found.assign(film[["film_thickness", "contact_half_width"]])
-    return described(found.assign(contact_resistance=("time", resistance)).drop_attrs())
+    found = found.assign(contact_resistance=("time", resistance)).drop_attrs()
+    return with_remarks(found, film, rollers, ["surface"])
 
 
 @checked

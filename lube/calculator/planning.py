@@ -142,7 +142,7 @@ def plan(
     sizes = len(planning.QUANTITIES), *turns.shape, *thresholds.shape, *shape
     answer["half_width"] = ("quantity", *turns.dims, *read), widths.reshape(sizes)
     answer["reading_error"] = read, reading.reshape((*thresholds.shape, *shape))
-    return with_remarks(answer, table, rollers)
+    return with_remarks(answer, table, rollers, [model])
 
 
 def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):

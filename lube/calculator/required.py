@@ -7,6 +7,7 @@ little to asperities.
 """
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,17 +15,18 @@ import numpy as np
 import xarray as xr
 
 from lube import types
-from lube.calculator.answers import Answer, described
+from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, checked, one_name, rotation_speed, single
 from lube.calculator.bands import Assumptions
 from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
-from lube.calculator.film import conditions_of, film_in_si
+from lube.calculator.film import conditions_of, film_in_si, with_remarks
 from lube.calculator.film_search import FilmSearch, check_known
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.ehl.film_formulas import formula
 from lube.grid.film_profiles import scaled_film
 from lube.grid.gap import Gap
+from lube.grid.load_sharing import surface_load_share
 from lube.physics.pressure_laws import ROELANDS_VISCOSITY
 from lube.schema import LIMITS, values_with_limits
 
@@ -35,6 +37,8 @@ TEMPERATURES = 241
 _ANY_OIL, _ANY = "mobilgear-shc-xmp-320", {"speed": 100.0, "temperature": 60.0}
 """Oil, speed in rpm and temperature in degC of a film that is given and depends on none of them."""
 _HEIGHTS = "rms_roughness", "first_rms_roughness", "second_rms_roughness"
+_CHANGED = "rms_deformation", "surface_rms_deformation"
+"""Variables of a film in proportion to the heights."""
 
 
 @checked
@@ -74,7 +78,8 @@ def required_film(
         ``film_thickness`` (um) and ``lambda_ratio``, each with ``_lower`` and ``_upper``. With
         `bands` also, as in the other functions, ``assumed_film_thickness_lower`` and so on: between
         them lie the answers of 90 % of the samples. They are zero or infinite if they do not lie
-        within films of 0.37 to 2.7 times the one found.
+        within films of 0.37 to 2.7 times the one found. The attribute ``remarks`` is as in
+        `lube.contact_probability`, at the film found.
 
     Raises
     ------
@@ -99,7 +104,13 @@ def required_film(
         film = xr.DataArray(ratios * rollers.pair.composite_rms_roughness, dims="film")
         return _ANY | {"force": force, "film_thickness": film}
 
-    return _labelled(search.films(half_width, points_at))
+    found = search.films(half_width, points_at)
+    film = film_in_si(rollers, Oil(_ANY_OIL), (force, "N"), "100 rpm", "60 degC", FORMULA, choices)
+    factor = xr.DataArray(found["film_thickness"][0]) / film["film_thickness"]
+    film = scaled_film(film, factor).assign(lambda_ratio=factor * film["lambda_ratio"])
+    if "surface_load_share" in film:
+        film["surface_load_share"] = surface_load_share(film, rollers.lines, has_shape=False)
+    return _labelled(found, film, rollers, choices)
 
 
 @checked
@@ -171,11 +182,12 @@ def required_viscosity(
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
     search = FilmSearch(assumed, share, realisations)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
-    films, factors = search.along(table, FACTORS, tried)
+    films, factors, film = search.along(table, FACTORS, tried)
     properties = oil.at(amount("temperature", temperature, "degC"))
     viscosity = properties["dynamic_viscosity"].item() * factors
     kinematic = viscosity / properties["density"].item()
-    return _labelled({"dynamic_viscosity": viscosity, "kinematic_viscosity": kinematic} | films)
+    found = {"dynamic_viscosity": viscosity, "kinematic_viscosity": kinematic} | films
+    return _labelled(found, film, rollers, choices)
 
 
 @checked
@@ -235,9 +247,10 @@ def required_speed(
     )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
     search = FilmSearch(assumed, share, realisations)
-    films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
+    films, speeds, film = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
-    return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
+    found = {"entrainment_speed": speeds, "speed": speeds * turns} | films
+    return _labelled(found, film, rollers, choices)
 
 
 @checked
@@ -299,8 +312,8 @@ def required_temperature(
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
     search = FilmSearch(assumed, share, realisations)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
-    films, found = search.along(table, levels, "temperature of this oil", is_rising=False)
-    return _labelled({"temperature": found} | films)
+    films, found, film = search.along(table, levels, "temperature of this oil", is_rising=False)
+    return _labelled({"temperature": found} | films, film, rollers, choices)
 
 
 @checked
@@ -374,8 +387,16 @@ def required_roughness(
     ratios = found["lambda_ratio"]
     with np.errstate(divide="ignore"):  # a limit may be 0
         sigma, factor = rollers.pair.composite_rms_roughness * own / ratios, own / ratios
-    found = {"roughness_factor": factor, "composite_rms_roughness": sigma}
-    return _labelled(found | {"lambda_ratio": ratios})
+    found = {"roughness_factor": factor, "composite_rms_roughness": sigma, "lambda_ratio": ratios}
+    changed = {name: factor[0] * film[name] for name in _CHANGED if name in film}
+    if "surface_load_share" in film:  # pressures grow with heights and film
+        share = surface_load_share(table_at(ratios[:1]), rollers.lines, gap.has_shape)
+        changed["surface_load_share"] = factor[0] * share
+    rougher = copy(rollers)
+    heights = tuple(factor[0] * each for each in rollers.pair.rms_heights)
+    rougher.pair = rollers.pair.with_rms_heights(heights)
+    changed["lambda_ratio"] = xr.full_like(film["lambda_ratio"], ratios[0])
+    return _labelled(found, film.assign(changed), rougher, choices)
 
 
 @dataclass(frozen=True)
@@ -395,11 +416,11 @@ class _Thicker:
         return properties.assign(dynamic_viscosity=viscosity.where(viscosity > ROELANDS_VISCOSITY))
 
 
-def _labelled(found):
-    """Answer of values and their limits, the smaller limit first."""
+def _labelled(found, film, rollers, choices):
+    """Answer of values and their limits, the smaller limit first; remarks on the film found."""
     rows = {}
     for name, (value, *limits) in found.items():
         rows |= values_with_limits(name, [value, *np.sort(limits[:2])])
         assumed = zip(LIMITS[1:], np.sort(limits[2:]), strict=False)
         rows |= {f"assumed_{name}{end}": limit for end, limit in assumed}
-    return described(xr.Dataset(rows))
+    return with_remarks(xr.Dataset(rows), film, rollers, choices.models)

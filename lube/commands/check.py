@@ -70,7 +70,10 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
         minutes=_minutes(study, points),
         cores=os.cpu_count(),
         last_run=_last_run(folder),
-        notes=[*remarks(*question), *_own_remarks(path, study, arguments["changes"])],
+        notes=[
+            *remarks(*question, study.contact_model),
+            *_own_remarks(path, study, arguments["changes"]),
+        ],
     )
     return summary.splitlines(), refused
 

@@ -10,7 +10,8 @@ from pydantic_core import to_jsonable_python
 
 from lube.contact.ensemble import PROBABILITIES
 from lube.ehl.film_formulas import FORMULAS
-from lube.grid.model_limits import deformed, merged, overloaded, rubbing
+from lube.grid.model_limits import deformed, merged, overloaded, rubbing, separated
+from lube.inference.surface_scatter import revolution_limits
 from lube.schema import COORDINATES, FILES, LIMITS, MEAN_LIMITS
 from lube.units import with_unit
 
@@ -61,9 +62,10 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
           their names for a reader;
         - ``variables``: for each of `SHOWN`, by `page_name`, its dimensions, unit, meaning, and
           values in the order of the dimensions, the last one fastest;
-        - ``marks``: points outside the model and those with less contact than at a thicker film, of
-          lines; those where the linear response to roughness is not valid, and those where
-          asperities of the surfaces carry much of the load;
+        - ``marks``: points outside the model, those with less contact than at a thicker film, and
+          those where the oil may keep lines apart that touch here, of lines; those where the linear
+          response to roughness is not valid, and those where asperities of the surfaces carry much
+          of the load;
         - ``factors``: what the band of the assumptions is over;
         - ``sampled``: whether the study has probabilities by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
@@ -80,6 +82,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     if "contact" in datasets:
         contact = datasets["contact"]
         marks |= {"overloaded": overloaded(contact), "merged": merged(contact, film)}
+        marks["separated"] = separated(film)
     return {
         "study": film.attrs["study"],
         "levels": {
@@ -92,7 +95,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
             if kind in datasets
             for name in names
         }
-        | _load_shares(datasets),
+        | _load_shares(datasets)
+        | _pair_limits(tail),
         "marks": {
             name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
             for name, where in marks.items()
@@ -196,6 +200,19 @@ def _load_shares(datasets):
     if "surface_load_share" in datasets["film"]:
         shares["surface_load_share"] = _variable(datasets["film"]["surface_load_share"], "film")
     return shares
+
+
+def _pair_limits(tail):
+    """Describe the limits of the share of one pair of surfaces in a revolution."""
+    if "surface_pair_deviation" not in tail:
+        return {}
+    limits = revolution_limits(tail.sel({MODEL: "surface"}))
+    known = (f"breakthrough_probability_pair{end}" for end in LIMITS[1:])
+    described = (
+        _variable(each.rename(n), "contact") for n, each in zip(known, limits, strict=True)
+    )
+    names = (f"surface_pair{end}" for end in LIMITS[1:])
+    return {n: each | {"file": "tail.nc"} for n, each in zip(names, described, strict=True)}
 
 
 def _traces(datasets, levels):

@@ -24,7 +24,8 @@ _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _RAREST = 1e-20
 """Lowest probability on the axes: at very thick films probabilities fall below any number."""
 _POINT = (
-    *"x film mean lower upper limit lambda width M L name outside falling deformed rubbing".split(),
+    *"x film mean lower upper limit lambda width M L name".split(),
+    *"outside falling separated deformed rubbing".split(),
     *CHOICES,
     MODEL,
 )
@@ -37,9 +38,10 @@ COLUMNS = {
     **dict.fromkeys(("whole", "close"), ("time", "length", "resistance")),
 }
 """Columns of each source of the figures. ``limit`` is an upper limit where no contact was seen;
-``outside``, ``falling``, ``deformed`` and ``rubbing`` are means where the model cannot hold, where
-contact is less than at a thicker film, where the linear response to roughness is not valid, or
-where asperities of the surfaces carry much of the load."""
+``outside``, ``falling``, ``separated``, ``deformed`` and ``rubbing`` are means where the model
+cannot hold, where contact is less than at a thicker film, where the oil may keep lines apart that
+touch here, where the linear response to roughness is not valid, or where asperities of the surfaces
+carry much of the load."""
 
 
 def draw(
@@ -167,6 +169,7 @@ def _probabilities(plot, sources, x, around):
     around_it = {"size": 15, "fill_color": None, "line_color": "black"}
     _points(plot, sources[around], x, "falling", **around_it)
     _points(plot, sources[around], x, "deformed", marker="square", **around_it)
+    _points(plot, sources[around], x, "separated", marker="star", **around_it | {"size": 22})
     _points(plot, sources[around], x, "rubbing", marker="diamond", **around_it | {"size": 26})
     look = {"marker": "inverted_triangle", "fill_color": "white"}
     limits = _points(plot, sources[around], x, "limit", **look)

@@ -11,6 +11,9 @@ count as changed as much as the shortest that was."""
 LARGEST_SHARE = 0.1
 """Largest share of the load on the surfaces' asperities at which the film of smooth rollers counts
 as valid."""
+SEPARATING_RATIO = 2.5
+"""Lambda ratio from which on a transient solution keeps overlapping lines farther apart than their
+boundary layer is thick (Figure 35)."""
 
 
 def overloaded(contact: xr.Dataset) -> xr.DataArray:
@@ -94,6 +97,25 @@ def deformed(film: xr.Dataset, surfaces: xr.Dataset | None = None) -> xr.DataArr
     return change > LARGEST_DEFORMATION * film["film_thickness"]
 
 
+def separated(film: xr.Dataset) -> xr.DataArray:
+    """Find the points where an isothermal Newtonian oil may keep lines apart that overlap.
+
+    The linear response gives contact there, the nonlinear one was found to give none.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset.
+
+    Returns
+    -------
+    xarray.DataArray
+        Whether `lambda_ratio` is at least `SEPARATING_RATIO`. False where the film is not known, or
+        the oil does not answer the roughness.
+    """
+    return (film["lambda_ratio"] >= SEPARATING_RATIO) & ("rms_deformation" in film)
+
+
 def rubbing(film: xr.Dataset) -> xr.DataArray:
     """Find the points where asperities of the surfaces carry much of the load.
 
@@ -110,3 +132,57 @@ def rubbing(film: xr.Dataset) -> xr.DataArray:
         Whether `surface_load_share` is above `LARGEST_SHARE`; False where it is not known.
     """
     return film.get("surface_load_share", xr.zeros_like(film["film_thickness"])) > LARGEST_SHARE
+
+
+def doubts(
+    film: xr.Dataset, surfaces: xr.Dataset | None = None, model: str = "line"
+) -> dict[str, tuple[str, xr.DataArray]]:
+    """Find the points where answers are doubtful, for the figures.
+
+    Parameters
+    ----------
+    film, surfaces
+        As in `deformed`.
+    model : str, optional
+        Contact model of the answers.
+
+    Returns
+    -------
+    dict
+        Marker and points by what is doubtful, as far as there are such points.
+    """
+    found = {
+        "oil's response not linear": ("s", deformed(film, surfaces)),
+        "asperities carry > 10 %": ("D", rubbing(film)),
+        "oil may keep lines apart": ("*", separated(film) & (model == "line")),
+    }
+    return {words: each for words, each in found.items() if each[1].any()}
+
+
+def with_load_share(records: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
+    """Add the share of the load on the surfaces' asperities at the study's levels, for `rubbing`.
+
+    Parameters
+    ----------
+    records : xarray.Dataset
+        A ``comparison`` dataset, at one film formula.
+    film : xarray.Dataset
+        The ``film`` dataset of the study.
+
+    Returns
+    -------
+    xarray.Dataset
+        With `surface_load_share`, if the film has it and the records have none of their own. NaN
+        for records near no level.
+    """
+    name, slip = "surface_load_share", "slide_to_roll_ratio"
+    if name in records or name not in film:
+        return records
+    near = {each: records[f"{each}_level"].variable for each in ("force", "speed", "temperature")}
+    known = np.isfinite(list(near.values())).all(axis=0)
+    near = {each: level.fillna(film[each].values[0]) for each, level in near.items()}
+    near |= {slip: records[slip].variable} if slip in film[name].dims else {}
+    formula = records["film_formula"].item()
+    share = film[name].sel(lubricant=records["lubricant"].variable, film_formula=formula)
+    share = share.sel(near, method="nearest").variable
+    return records.assign({name: share.where(known)})

@@ -1,11 +1,12 @@
 """Numbers to look at before a long computation, and remarks on values that may be mistakes."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
-from lube.grid.model_limits import deformed
+from lube.grid.model_limits import SEPARATING_RATIO, deformed, separated
 from lube.physics.excursions import mean_overlap
 from lube.units import with_unit
 
@@ -79,13 +80,15 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
     return texts
 
 
-def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
+def remarks(film: xr.Dataset, lines, rollers, models: Sequence[str] = ("line",)) -> list[str]:
     """List values that may be mistakes, and those beyond the limits of the model.
 
     Parameters
     ----------
     film, lines, rollers
         As in `overview`.
+    models : sequence of str, optional
+        Contact models; without ``line`` nothing is said of lines.
 
     Returns
     -------
@@ -106,7 +109,9 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     waves, points = width / shortest, shortest / lines.spacing
     share = expected_load_share(film, rollers)
     # No line stands for surfaces whose ridges run along rolling.
-    loaded, overloaded = (int((share > part).sum()) * lines.follows_rolling for part in (0.1, 1.0))
+    of_lines = "line" in models and lines.follows_rolling
+    loaded, overloaded = (int((share > part).sum()) * of_lines for part in (0.1, 1.0))
+    apart = int(separated(film).sum()) * of_lines
     carried = film.get("surface_load_share", xr.zeros_like(films))
     rubs, overrubs = (int((carried > part).sum()) for part in (0.1, 1.0))
     more, most = (f"at {n} more than all of it, " if n else "" for n in (overloaded, overrubs))
@@ -127,7 +132,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "
         "boundary layer breaks, so contact will be underestimated": shortest > 5e-6,
         f"grid: {points:.3g} points in the shortest wave; the curvature of asperities needs "
-        "10": lines.follows_rolling and points < 10.0 * (1.0 - 1e-6),
+        "10": of_lines and points < 10.0 * (1.0 - 1e-6),
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
         f"more than a tenth of the load, {more}where the film of smooth rollers is less "
         "certain": loaded,
@@ -136,6 +141,9 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         "certain": rubs,
         f"roughness: at {bends} of {share.size} operating points the oil changes it by more than a "
         "tenth of the film, where the linear response is not valid": bends,
+        f"roughness: at {apart} of {share.size} operating points the lambda ratio is at least "
+        f"{SEPARATING_RATIO}; lines that touch there by the linear response may be kept apart by "
+        "the oil, whose response is not linear": apart,
     }
     return [text for text, unlikely in found.items() if unlikely]
 

@@ -23,6 +23,7 @@ from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import SURFACES, strip_films
 from lube.grid.discretise import speed_ratios
 from lube.statistics.confidence import error_of_limits
+from lube.schema import LIMITS
 from lube.statistics.one_pair import prediction_limits, scatter_ratio
 from lube.surfaces.rough_surface import longest_waves
 from lube.surfaces.synthetic import LineSpecLike
@@ -77,6 +78,29 @@ def surface_prediction(
     lower, upper = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
     # No pair is better known than the mean, whose limits are not as far from it near 0 and 1.
     return np.minimum(lower, limits[1]), np.maximum(upper, limits[2])
+
+
+def revolution_limits(tail: xr.Dataset) -> Pair:
+    """Predict between which limits the share of one pair lies in a revolution of pure rolling.
+
+    Parameters
+    ----------
+    tail : xarray.Dataset
+        A ``tail`` dataset, of surfaces.
+
+    Returns
+    -------
+    tuple of xarray.DataArray
+        Lower and upper limit of 95 % of the shares; NaN with slip.
+    """
+    names = (f"breakthrough_probability{end}" for end in LIMITS)
+    limits = [tail[name].where(tail["slide_to_roll_ratio"] == 0.0) for name in names]
+    share, deviation = xr.broadcast(limits[0], tail["surface_pair_deviation"])
+    deviation = deviation.transpose(*share.dims)
+    # Where contact is certain no pair differs.
+    size = (share * (1.0 - share) / deviation**2).where(deviation > 1e-9, 1e18)
+    predicted = surface_prediction([each.values for each in limits], size.values)
+    return tuple(share.copy(data=limit) for limit in predicted)
 
 
 def pair_correlation(share: Array) -> Array:

@@ -9,7 +9,9 @@ import numpy as np
 import xarray as xr
 
 from lube.grid import model_limits
+from lube.grid.levels import rolling
 from lube.grid.operating_points import by_contact_model
+from lube.inference.surface_scatter import revolution_limits
 from lube.report.pages import render
 from lube.schema import LIMITS, MEAN_LIMITS, REGIMES, values_with_limits
 from lube.storage.git import commit
@@ -68,7 +70,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     study : Study
         The study.
     results : dict of str to xarray.Dataset
-        Its datasets `lube.report.SUMMARISED`, by name.
+        Its datasets `lube.report.SUMMARISED`, by name, and ``sensitivity`` if it was made.
 
     Returns
     -------
@@ -81,6 +83,9 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     lines = results["contact"] if "line" in study.contact_model else None
     known = {"line": _of_lines, "surface": _of_surfaces}
     contacts = {model: known[model](study, results) for model in study.contact_model}
+    if "sensitivity" in results:
+        given = study, results["sensitivity"]
+        contacts = {model: _assumed(each, model, *given) for model, each in contacts.items()}
     compared = study.contact_model if study.compares_surfaces else ("line",)
     return render(
         "findings.md",
@@ -94,6 +99,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         held=_held(film, lines, first),
         limits=model_limits,
         deformed={model: _deformed(model, film, results, first) for model in contacts},
+        separated=_separated(film, contacts, first),
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[
             # A simulated rig may run with lines.
@@ -177,7 +183,8 @@ def _of_lines(study, results):
     pairs = contact["breakthrough_probability"]
     deviation = pairs.std("realisation", ddof=1) if study.realisations > 1 else pairs[0] * math.nan
     means = contact[[f"breakthrough_probability{end}" for end in MEAN_LIMITS]]
-    return means.assign(pair_deviation=deviation)
+    of_pair = {f"pair{end}": contact[f"breakthrough_probability_pair{end}"] for end in LIMITS[1:]}
+    return means.assign(of_pair | {"pair_deviation": deviation})
 
 
 def _of_surfaces(study, results):
@@ -185,14 +192,33 @@ def _of_surfaces(study, results):
     tail = results["tail"].sel(contact_model="surface")
     limits = (tail[f"breakthrough_probability{end}"] for end in LIMITS)
     found = values_with_limits("breakthrough_probability", limits, names=MEAN_LIMITS)
-    rolling = tail["slide_to_roll_ratio"] == 0.0
-    return xr.Dataset(found | {"pair_deviation": tail["surface_pair_deviation"].where(rolling)})
+    rolls = tail["slide_to_roll_ratio"] == 0.0
+    found["pair_deviation"] = tail["surface_pair_deviation"].where(rolls)
+    found |= zip(("pair_lower", "pair_upper"), revolution_limits(tail), strict=True)
+    return xr.Dataset(found)
+
+
+def _assumed(contact, model, study, sensitivity):
+    """Add the band of the assumptions: nearest to pure rolling, and of the first contact model."""
+    slips = contact["slide_to_roll_ratio"]
+    known = slips == rolling(slips.values)
+    known &= model == study.contact_model[0] or "contact_model" in sensitivity["factor"].values
+    band = {end: sensitivity[f"breakthrough_probability{end}"] for end in LIMITS[1:]}
+    return contact.assign({f"assumed{end}": limit.where(known) for end, limit in band.items()})
 
 
 def _deformed(model, film, results, first):
     """Count the points where the oil changes the roughness by too large a part of the film."""
     surfaces = results["tail"] if model == "surface" else None
     return int(model_limits.deformed(film.sel(first), surfaces).sum())
+
+
+def _separated(film, contacts, first):
+    """Count the points at which lines touch, although the oil may keep them apart."""
+    if "line" not in contacts:
+        return 0
+    touched = contacts["line"].sel(first)["breakthrough_probability_mean"] > 0.0
+    return int((model_limits.separated(film.sel(first)) & touched).sum())
 
 
 def _held(film, contact, first):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from made import made
+from made import made, on_few_surfaces
 
 import lube
 from lube import LubeError
@@ -93,3 +93,20 @@ def test_a_trace_is_of_one_point(rollers, oil):
 def test_a_trace_needs_a_contact_that_the_grid_resolves(rollers, oil):
     with pytest.raises(LubeError, match=r"force: the contact is .* need at least two grid spac"):
         lube.trace(rollers, oil, **POINT | {"force": "1e-6 N"})
+
+
+@pytest.mark.parametrize("model", ["line", "surface"])
+def test_a_trace_has_the_remarks_of_the_probability(oil, model):
+    rough = lube.Rollers("5 mm", "3 um", points=20_000)
+    choices = {"contact_model": model, "seed": 4}
+    found = lube.trace(rough, oil, **POINT, **choices).attrs["remarks"]
+    assert f"the {model}" in found and "asperities carry more than a tenth" in found
+    assert model == "line" or "line" not in found
+    with on_few_surfaces(4):
+        same = lube.contact_probability(rough, oil, **POINT, **choices, realisations=1)
+    assert found == same.attrs["remarks"]
+
+
+def test_a_trace_says_where_the_oils_response_is_not_linear(rollers, oil):
+    cool = POINT | {"temperature": "40 degC", "roughness_deformation": "computed"}
+    assert "kept apart by the oil" in lube.trace(rollers, oil, **cool).attrs["remarks"]

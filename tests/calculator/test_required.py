@@ -488,3 +488,28 @@ def test_conditions_without_a_known_film_are_refused_in_one_line(rollers, monkey
             lube.required_roughness(*given, "40 degC", **{choice: "computed"}, **FEW)
     with pytest.raises(LubeError, match=r"^the film did not converge at the conditions tried"):
         lube.required_temperature(*given, film_formula="computed", **FEW)
+
+
+@pytest.mark.parametrize("model", ["line", "surface"])
+def test_answers_have_the_remarks_of_the_probability_at_the_film_found(oil, model):
+    light, choices = POINT | {"force": "10 N"}, {"contact_model": model, **ONE}
+    waves = {"shortest_wavelength": "20 um", "points": 200_000, "shear_strength": "0.2 MPa"}
+    rough = Rollers("50 mm", "1 um", **waves)
+
+    def remarks(rollers=rough, **changes):
+        found = lube.contact_probability(rollers, oil, **light | changes, **choices)
+        return found.attrs["remarks"]
+
+    with on_few_surfaces(10):
+        asked = choices | {"share": {"line": 0.1, "surface": 0.9999}[model]}
+        film = lube.required_film(rough, light["force"], **asked)
+        speed = lube.required_speed(rough, oil, **without("speed") | {"force": "10 N"}, **asked)
+        viscosity = lube.required_viscosity(rough, oil, **light, **asked)
+        rougher = lube.required_roughness(rough, oil, **light, **asked)
+        expected = remarks(speed=(speed["speed"].item(), "rpm"))
+        height = f"{rougher['roughness_factor'].item()!r} um"
+        of_height = remarks(Rollers("50 mm", height, **waves))
+    assert f"the {model}" in expected and "asperities carry more than a tenth" in expected
+    for found in (film, speed, viscosity):
+        assert found.attrs["remarks"] == expected
+    assert rougher.attrs["remarks"] == of_height

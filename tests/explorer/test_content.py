@@ -152,3 +152,39 @@ def test_points_whose_surfaces_carry_much_of_the_load_are_marked(explored):
     changed = film.assign(surface_load_share=0.5 * xr.ones_like(film["film_thickness"]))
     assert all(read_back(explored | {"film": changed})["marks"]["rubbing"]["values"])
     assert not any(read_back(explored)["marks"]["rubbing"]["values"])
+
+
+def test_points_where_the_oil_may_keep_lines_apart_are_marked(explored):
+    film = explored["film"].copy(deep=True)
+    film["lambda_ratio"].loc[{"temperature": 40}] = 3.0
+    film["lambda_ratio"].loc[{"temperature": 80}] = 2.0
+    assert not any(read_back(explored | {"film": film})["marks"]["separated"]["values"])
+    film["rms_deformation"] = 0.0 * film["film_thickness"].isel(film_formula=0)
+    marked = read_back(explored | {"film": film})["marks"]["separated"]
+    temperatures = film["temperature"].broadcast_like(film["lambda_ratio"])
+    assert marked["values"] == (temperatures == 40.0).values.ravel().tolist()
+
+
+def test_one_pair_of_surfaces_has_limits_in_pure_rolling(explored):
+    assert "surface_pair_lower" not in read_back(explored)["variables"]
+    tail = explored["tail"].expand_dims(contact_model=["surface"])
+    for end, value in (("", 0.3), ("_lower", 0.299), ("_upper", 0.301)):
+        tail[f"breakthrough_probability{end}"] = 0.0 * tail["breakthrough_rate"].fillna(0.0) + value
+    one = tail["breakthrough_probability"].isel(slide_to_roll_ratio=0, contact_model=0, drop=True)
+    tail["surface_pair_deviation"] = 0.0 * one + 0.05
+    variables = read_back(explored | {"tail": tail})["variables"]
+    lower, upper = (variables[f"surface_pair_{end}"] for end in ("lower", "upper"))
+    assert "contact_model" not in lower["dims"] and lower["file"] == "tail.nc"
+    slips = tail["slide_to_roll_ratio"].broadcast_like(
+        tail.isel(contact_model=0, drop=True)["breakthrough_probability"]
+    )
+    found = zip(
+        slips.transpose(*lower["dims"]).values.ravel(),
+        lower["values"],
+        upper["values"],
+        strict=True,
+    )
+    for slip, least, most in found:
+        assert (
+            (least is None and most is None) if slip else 0.15 < least < 0.25 < 0.35 < most < 0.45
+        )

@@ -5,7 +5,15 @@ import pytest
 import xarray as xr
 from scipy.linalg import hadamard
 
-from lube.grid.model_limits import deformed, merged, overloaded, rubbing
+from lube.grid.model_limits import (
+    deformed,
+    doubts,
+    merged,
+    overloaded,
+    rubbing,
+    separated,
+    with_load_share,
+)
 
 
 def table(mean, geometric, error=0.005, film=(3.0, 2.0, 1.0), realisations=8):
@@ -92,3 +100,45 @@ def test_asperities_rub_where_they_carry_more_than_a_tenth_of_the_load():
     assert not rubbing(film).any()  # not asked for
     film["surface_load_share"] = "force", [0.09, 0.11, np.nan]
     assert rubbing(film).values.tolist() == [False, True, False]
+
+
+def test_the_oil_may_separate_lines_that_it_answers_from_a_lambda_ratio_of_two_and_a_half_on():
+    film = xr.Dataset({"lambda_ratio": ("force", [2.4, 2.5, 4.0, np.nan])})
+    assert not separated(film).any()  # lines as drawn
+    film["rms_deformation"] = "force", [1e-9, 1e-9, 1e-9, np.nan]
+    assert separated(film).values.tolist() == [False, True, True, False]
+
+
+def test_figures_mark_only_what_some_point_has_and_the_oil_separates_no_surfaces():
+    films = {"film_thickness": ("force", [1e-6, 1e-6]), "lambda_ratio": ("force", [2.0, 3.0])}
+    film = xr.Dataset(films)
+    assert not doubts(film)
+    film["rms_deformation"] = "force", [0.0, 0.2e-6]
+    found = doubts(film)
+    assert [marker for marker, _ in found.values()] == ["s", "*"]
+    assert all(where.values.tolist() == [False, True] for _, where in found.values())
+    assert [marker for marker, _ in doubts(film, model="surface").values()] == ["s"]
+    film["surface_load_share"] = "force", [0.2, 0.0]
+    assert [marker for marker, _ in doubts(film, xr.Dataset(), "surface").values()] == ["D"]
+
+
+def test_records_have_the_load_share_at_the_levels_that_they_are_near():
+    names = "slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force"
+    levels = {"slide_to_roll_ratio": [0.0, 0.5], "lubricant": ["a", "b"], "film_formula": ["f"]}
+    levels |= {"temperature": [40.0], "speed": [100.0], "force": [400.0, 800.0]}
+    share = xr.DataArray(np.arange(8.0).reshape(2, 2, 1, 1, 1, 2), levels, names)
+    film = xr.Dataset({"surface_load_share": share})
+    records = xr.Dataset({"lubricant": ("record", ["b", "a", "a"])}, {"film_formula": "f"})
+    records["slide_to_roll_ratio"] = "record", [0.5, 0.0, 0.0]
+    for name, values in (("force", [800.0, 400.0, np.nan]), ("speed", [100.0] * 3)):
+        records[f"{name}_level"] = "record", values
+    records["temperature_level"] = "record", [40.0] * 3
+    records = records.assign_coords(force=("record", [799.0, 401.0, 600.0]))
+    found = with_load_share(records, film)["surface_load_share"]
+    np.testing.assert_array_equal(found, [7.0, 0.0, np.nan])
+    own = records.assign(surface_load_share=0.2)
+    assert with_load_share(own, film) is own and with_load_share(records, xr.Dataset()) is records
+    rolling = film.isel(slide_to_roll_ratio=0, drop=True)
+    np.testing.assert_array_equal(
+        with_load_share(records, rolling)["surface_load_share"], [3.0, 0.0, np.nan]
+    )

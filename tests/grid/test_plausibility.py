@@ -87,3 +87,13 @@ def test_the_grid_matters_only_where_a_line_stands_for_the_surfaces(study, film)
         found = remarks(*question)
         assert any(line.startswith("grid: 8 points") for line in found) == is_said
         assert ("grid" in overview(*question)) == is_said
+
+
+def test_nothing_is_said_of_lines_where_contact_is_of_surfaces_alone(study, film):
+    thin = film.assign(film_thickness=0.1 * film["film_thickness"])
+    thin["rms_deformation"] = 0.0 * thin["film_thickness"].isel(film_formula=0, drop=True)
+    question = thin, study.line_spec, study.rollers
+    of_lines = {"the line's asperities", "lines that touch there by the linear response"}
+    for models, is_said in ((("line",), True), (("line", "surface"), True), (("surface",), False)):
+        found = "\n".join(remarks(*question, models))
+        assert all((words in found) == is_said for words in of_lines)

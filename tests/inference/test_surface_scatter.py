@@ -14,6 +14,7 @@ from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_scatter import (
     pair_correlation,
     pair_shares,
+    revolution_limits,
     surface_prediction,
     surface_scatter,
 )
@@ -173,3 +174,16 @@ def test_contacts_that_the_oil_ends_are_hardly_shorter_with_slip(study, make_spe
     drawn, answered = (surface_scatter(pair, *record, 0.0) for pair in pairs)
     # A turn of the faster surface is shorter than one of pure rolling.
     assert 1.25 * drawn < answered < 1.25
+
+
+def test_the_share_of_a_pair_lies_in_its_limits_in_pure_rolling_alone():
+    share, slips = np.array([0.3, 1.0, np.nan]), [0.0, 0.5]
+    tail = xr.Dataset(coords={"slide_to_roll_ratio": slips})
+    for end, by in (("", 1.0), ("_lower", 0.999), ("_upper", 1.001)):
+        values = np.tile(np.minimum(by * share, 1.0), (2, 1))
+        tail[f"breakthrough_probability{end}"] = ("slide_to_roll_ratio", "force"), values
+    tail["surface_pair_deviation"] = "force", [0.05, 0.0, np.nan]
+    lower, upper = (each.values for each in revolution_limits(tail))
+    np.testing.assert_allclose([lower[0, 0], upper[0, 0]], [0.2, 0.4], atol=0.02)
+    assert lower[0, 1] == pytest.approx(1.0, abs=0.01) and upper[0, 1] == 1.0
+    assert np.isnan([lower[1], upper[1]]).all() and np.isnan([lower[0, 2], upper[0, 2]]).all()

@@ -87,7 +87,9 @@ def test_figure_17_draws_limits_of_a_film_that_has_no_value(files, tmp_path):
     for end, value in (("", np.nan), ("_lower", 0.5), ("_upper", 2.5)):
         gauge[f"gauged_lambda_ratio{end}"][0] = value
     gauge.to_netcdf(tmp_path / "gauge.nc")
-    figure = draw(ROOT / "notebooks/fig17_gauge.ipynb", {"gauge": tmp_path / "gauge.nc"})
+    paths = {name: files / f"{name}.nc" for name in ("film", "comparison")}
+    paths["gauge"] = tmp_path / "gauge.nc"
+    figure = draw(ROOT / "notebooks/fig17_gauge.ipynb", paths)
     bars = [bar.tolist() for lines in figure.axes[0].collections for bar in lines.get_segments()]
     place = gauge.lambda_ratio[0, 0].item()
     assert [[place, 0.5], [place, 2.5]] in bars
@@ -115,7 +117,7 @@ def test_figure_16_cuts_no_mark_at_the_edge(files, tmp_path):
     comparison["simulated_probability"][:] = 1.0
     comparison["rms_deformation"] = comparison.film_thickness[0].drop_vars("film_formula")
     comparison.to_netcdf(tmp_path / "comparison.nc")
-    paths = {"comparison": tmp_path / "comparison.nc"}
+    paths = {"comparison": tmp_path / "comparison.nc", "film": files / "film.nc"}
     axes = draw(ROOT / "notebooks/fig16_comparison.ipynb", paths).axes[0]
     (marks,) = [line for line in axes.lines if line.get_label() == "oil's response not linear"]
     assert marks.get_xdata().size and not marks.get_clip_on()

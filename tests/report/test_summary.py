@@ -116,6 +116,8 @@ def results(study, datasets):
     mean.loc[most | {"film_formula": "paper", "force": 800}] = 0.0008
     for name, values in (("mean", mean), ("lower", 0.5 * mean), ("upper", 2.0 * mean + 1e-4)):
         contact[f"breakthrough_probability_{name}"] = values
+    for name, factor in (("lower", 0.8), ("upper", 1.2)):
+        contact[f"breakthrough_probability_pair_{name}"] = factor * mean
     # Two records of a point, and one near no level.
     comparison = datasets["comparison"].isel(record=[0, 0, 0]).copy(deep=True)
     levels = {"force": 1600.0, "speed": 100.0, "temperature": [80.0, 80.0, np.nan]}
@@ -130,7 +132,8 @@ def results(study, datasets):
     gauge["gauged_film_thickness_lower"][:] = [1e-7, 2e-7, 0.0]
     gauge["gauged_film_thickness_upper"][:] = [3e-7, np.inf, 1e-7]
     changed = {"film": film, "contact": contact, "comparison": comparison, "gauge": gauge}
-    return datasets | changed
+    known = {kind: each for kind, each in datasets.items() if kind != "sensitivity"}
+    return known | changed
 
 
 def test_the_answers_are_those_of_the_datasets(study, results):
@@ -139,8 +142,9 @@ def test_the_answers_are_those_of_the_datasets(study, results):
         "Metal contact occurs at 2 of 16 operating points: more than 10 % of the time at 1, less",
         "less than 0.1 % at 1. At the other 14 no contact was seen, so it is less frequent "
         "there than 0.01 %",
-        "**43.2 %** of the time (95 % interval 21.6 % to 86.4 %), at 1600 N, 100 r/min, 80 °C, "
-        "slide-to-roll ratio 0.1, and least frequent where it was seen, 0.08 %",
+        "**43.2 %** of the time (95 % interval 21.6 % to 86.4 %; one pair of rollers 34.6 % to "
+        "51.9 %), at 1600 N, 100 r/min, 80 °C, slide-to-roll ratio 0.1, and least frequent where "
+        "it was seen, 0.08 % (0.04 % to 0.17 %; one pair 0.064 % to 0.096 %), at 800 N",
         "The contact is 280 µm to 396 µm wide, 1.8 to 2.5 times the shortest wavelength",
         "piezoviscous and rigid at 4, piezoviscous and elastic at 4 of the 8 combinations",
         "outside the validity range of the film formula: 4 with `paper`, 4 with `pan-hamrock`.",
@@ -154,7 +158,7 @@ def test_the_answers_are_those_of_the_datasets(study, results):
         "thickest, for an upper limit in 1; contact is too frequent for a lower limit in 1.",
         "| normal force | 800 N: 0.01 %; 1600 N: 5.4 % |",
         "| 1600 N, 100 r/min, 80 °C, slide-to-roll ratio 0 | 0.283 µm | 1 | **0 %** "
-        "(0 % to 0.01 %) | ",
+        "(0 % to 0.01 %) | 0 % (0.",
     ):
         assert words in text
     assert text.count(" | 43.2 % to 44.2 % (2 records) |") == 1 and text.count(" | – |") == 1
@@ -206,6 +210,33 @@ def test_points_whose_roughness_is_not_answered_linearly_are_counted(study, resu
     assert "At 8 of the 16 operating points the oil changes the roughness by more than 10 %" in text
 
 
+def test_the_range_over_the_assumptions_is_stated_where_it_is_known(study, results):
+    assert "assumptions" not in findings(study, results)
+    rolling = xr.ones_like(results["film"]["film_thickness"].isel(film_formula=0, drop=True))
+    ends = {"lower": 0.03, "upper": 0.9}
+    band = {f"breakthrough_probability_{end}": level * rolling for end, level in ends.items()}
+    known = xr.Dataset(band, {"factor": ["temperature"]})
+    text = findings(study, results | {"sensitivity": known})
+    assert "| one pair of rollers, 95 % (standard deviation) | assumptions, 5 to 95 % |" in text
+    rows = [line for line in text.splitlines() if "slide-to-roll ratio" in line and line[0] == "|"]
+    assert ["| 3 % to 90 % |" in row for row in rows] == ["ratio 0 |" in row for row in rows]
+    assert any("| 3 % to 90 % |" in row for row in rows)
+
+
+def test_points_where_the_oil_may_keep_touching_lines_apart_are_counted(study, results):
+    film = results["film"].copy(deep=True)
+    film["lambda_ratio"][:] = 2.5
+    assert "may keep lines apart" not in findings(study, results | {"film": film})
+    film["rms_deformation"] = 0.0 * film["film_thickness"].isel(film_formula=0)
+    text = findings(study, results | {"film": film})
+    assert "At 2 of the points where the lines touch, the lambda ratio is at least 2.5. " in text
+    surfaces = study.model_copy(update={"contact_model": ("surface",)})
+    tail = results["tail"].expand_dims(contact_model=["surface"])
+    tail["surface_pair_deviation"] = tail["breakthrough_probability"].isel(slide_to_roll_ratio=0)
+    text = findings(surfaces, results | {"film": film, "tail": tail})
+    assert "may keep lines apart" not in text
+
+
 def test_points_whose_surfaces_carry_much_of_the_load_are_counted(study, results):
     assert "Asperities of the surfaces" not in findings(study, results)
     film = results["film"]
@@ -234,7 +265,7 @@ def test_contact_of_surfaces_is_stated_beside_that_of_lines_or_alone(study, resu
     results = results | {"tail": xr.Dataset(tail)}
     both = findings(study.model_copy(update={"contact_model": ("line", "surface")}), results)
     sentence = "Metal contact of the surfaces occurs at 16 of 16 operating points: more than 10 %"
-    row = "| 0.283 µm | 1 | surfaces | **70 %** (63 % to 77 %) | 2 % |"
+    row = "| 0.283 µm | 1 | surfaces | **70 %** (63 % to 77 %) | 61.7 % to 78.3 % (2 %) |"
     assert f"{row} – |" in both  # the simulated rig runs with lines
     lines = "Metal contact of the lines occurs at 2 of 16", "1 | lines | **0 %**", "0.01 %; 1600"
     for words in (sentence, row, *lines, "| normal force | 800 N: 70 %; 1600 N: 70 % |"):

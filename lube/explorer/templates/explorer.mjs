@@ -78,9 +78,10 @@ const marks = {
     overloaded: "outside the model: the asperities would carry more than the load",
     merged: "less contact than at a thicker film: the layer of merged segments holds",
     deformed: "the oil changes the roughness by too large a part of the film: the linear response is not valid",
+    separated: "lambda ratio of 2.5 or more: the oil may keep lines apart that touch by its linear response",
     rubbing: "asperities of the surfaces carry more than a tenth of the load: the film is less certain",
 };
-const ofLines = ["overloaded", "merged"];
+const ofLines = ["overloaded", "merged", "separated"];
 const isMarked = (name, point) => !(ofLines.includes(name) && isSurface(point)) && at(name, point, content.marks);
 const marked = (point) => Object.keys(marks).filter((name) => isMarked(name, point));
 
@@ -104,6 +105,7 @@ function row(point, along) {
         outside: isMarked("overloaded", point) ? positive(mean) : NaN,
         falling: isMarked("merged", point) ? positive(mean) : NaN,
         deformed: isMarked("deformed", point) ? positive(mean) : NaN,
+        separated: isMarked("separated", point) ? positive(mean) : NaN,
         rubbing: isMarked("rubbing", point) ? positive(mean) : NaN,
         name: [`${named(point, grid)}: ${withInterval(found)}`, ...marked(point).map((name) => marks[name])].join("; "),
     };
@@ -187,11 +189,12 @@ const rolling = slips.lastIndexOf(Math.min(...slips));
 const isAssumed = (point) =>
     point.slide_to_roll_ratio === rolling && ["contact_model", "film_formula"].every((name) => !point[name] || content.factors.includes(name));
 
-// What one pair of lines may show in a revolution, and what means over pairs the assumptions allow
+// What one pair may show in a revolution, and what means over pairs the assumptions allow
 function bands(point) {
     const both = content.factors.includes("contact_model") ? " of lines and surfaces" : "";
     const words = {
         breakthrough_probability_pair: ["one pair, 95 %: ", !isSurface(point)],
+        surface_pair: ["one pair, 95 %: ", isSurface(point)],
         "sensitivity.breakthrough_probability": [`assumptions, 5 to 95 % of means${both}: `, isAssumed(point)],
     };
     const texts = Object.entries(words).map(([name, [text, isKnown]]) => {
