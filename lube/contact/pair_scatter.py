@@ -32,6 +32,20 @@ two times between which the rollers move by s, and the surfaces by :math:`v_i s 
 A summit of the slower surface stays in the strip for long, and one of a surface at rest for ever,
 where it touches again and again. One of a small roller returns with each of its turns.
 
+The layer breaks at a fraction f of the contacts only. If a summit touches again in a new alignment,
+its curvature has changed. Curvatures are taken to be normal, and to have the correlation
+:math:`w_i^2` in alignments with the surface i in common, by its part :math:`w_i` of the mean square
+curvature. So :math:`\chi_i` is multiplied by the fraction of broken layers that break again,
+
+.. math:: q_i = \Phi_2(t, t; w_i^2) / f, \qquad f = 1 - \Phi(t)
+
+With slip layers also break and hold while a contact lasts, until no more of them are broken than of
+other contacts. If a layer is broken on the way :math:`d_b` of the rollers,
+
+.. math:: f + (1 - f) \exp\left( -\frac{s}{1 - f} \left( \frac{1}{d_b} - \frac1d \right) \right)
+
+is another factor of the first term.
+
 If the roughness of both surfaces drifts, and heights have the correlation c with those of an
 earlier turn, both turns share the fraction :math:`\chi` with :math:`c \rho` in place of
 :math:`w_i \rho_i`. With it the correlation of their shares follows in the same way.
@@ -43,7 +57,7 @@ import numpy as np
 import scipy
 
 from lube.grid.operating_points import surface_speeds
-from lube.surfaces.rough_surface import field, rough_surface
+from lube.surfaces.rough_surface import field, rough_surface, surface_waves
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair
 
@@ -129,6 +143,7 @@ def slip_ratio(
     slide_to_roll_ratio: float,
     perimeters: Pair,
     turns: float = 1.0,
+    broken: Pair | None = None,
 ) -> float:
     """Compute the variance of the share of up to a turn, over that of rolling of equal rollers.
 
@@ -144,6 +159,9 @@ def slip_ratio(
         Perimeters of both rollers, m; a turn of pure rolling is that of the first.
     turns : float, optional
         Turns of the roller with the faster surface, 1 at most.
+    broken : tuple of float, optional
+        Fraction of contacts whose layer breaks, and way of the rollers while it is broken, m; by
+        default it breaks at all of them, as long as they last.
 
     Returns
     -------
@@ -154,17 +172,20 @@ def slip_ratio(
         return 1.0 / turns
     speeds = surface_speeds(1.0, slide_to_roll_ratio)
     whole_way = turns * perimeters[int(np.argmax(speeds))] / max(speeds)
-    ways = [[0.0], np.geomspace(1e-3 * min(passages[0], whole_way), whole_way, 2000)]
+    fraction, shortest = broken or (1.0, passages[0])
+    ways = [[0.0], np.geomspace(1e-3 * min(shortest, whole_way), whole_way, 2000)]
     for speed, perimeter in zip(speeds, perimeters, strict=True):
         passed = perimeter * np.arange(1.0, speed * whole_way / perimeter + 1.0)
         ways += [np.add.outer(passed, side * lags).ravel() / max(speed, 1e-9) for side in (-1, 1)]
     way = np.unique(np.clip(np.concatenate(ways), 0.0, whole_way))
     ending = max(1.0 / passages[0] - 1.0 / passages[1], 0.0)
+    holding = max(1.0 / shortest - 1.0 / passages[0], 0.0) / max(1.0 - fraction, 1e-9)
 
     def rest(way):
         return np.interp(way, lags, common, right=0.0)
 
     alike = (1.0 - np.sum(recurring)) * rest(way) * np.exp(-way * ending)
+    alike *= fraction + (1.0 - fraction) * np.exp(-way * holding)
     for part, speed, perimeter in zip(recurring, speeds, perimeters, strict=True):
         moved = speed * way % perimeter
         alike += part * rest(np.minimum(moved, perimeter - moved))
@@ -212,21 +233,29 @@ class RecurringContacts:
         edges = np.concatenate([[-2.0], 0.5 * (_LEVELS[1:] + _LEVELS[:-1]), [2.0]])
         covariances = (field(surface.variances * part, surface.points) for part in parts)
         self._counts = [np.histogram(each / surface.rms**2, edges)[0] for each in covariances]
+        waves = (surface_waves(spec, roller) for roller in range(len(spec.lines)))
+        curved = [np.sum(power * (along**2 + down**2) ** 2) for along, down, power in waves]
+        self._curved = np.array(curved) / sum(curved)
 
-    def at(self, film: float) -> Array:
+    def at(self, film: float, broken: float = 1.0) -> Array:
         """Find the fraction for either surface.
 
         Parameters
         ----------
         film : float
             Film over the rms height of both surfaces together.
+        broken : float, optional
+            Fraction of contacts whose layer breaks; only those that break it are counted.
 
         Returns
         -------
         numpy.ndarray, shape (2,)
         """
         *alone, both = np.einsum("pl,l->p", self._counts, _excess(film))
-        return np.divide(alone, both, out=np.zeros(2), where=both > 0.0)
+        found = np.divide(alone, both, out=np.zeros(2), where=both > 0.0)
+        broken = np.clip(broken, 1e-12, 1.0 - 1e-12)
+        again = np.interp(self._curved**2, _LEVELS, _excess(scipy.special.ndtri(broken)))
+        return found * (broken + again / broken)
 
     def drifted(self, film: float, correlation: Array) -> Array:
         """Find the fraction that is left after a drift of both surfaces.
@@ -253,6 +282,6 @@ def _excess(film):
     # Its derivative with the correlation sin(t) is the density of both at the film (Plackett).
     angles = np.arcsin(_LEVELS)
     with np.errstate(divide="ignore"):
-        density = np.exp(-(film**2) / (1.0 + _LEVELS)) / (2.0 * np.pi)
+        density = np.exp(-max(film**2, 1e-12) / (1.0 + _LEVELS)) / (2.0 * np.pi)
     sums = scipy.integrate.cumulative_trapezoid(density, angles, initial=0.0)
     return sums - np.interp(0.0, angles, sums)

@@ -148,10 +148,20 @@ class StripFilm:
             Of the roughness in the gap. Its curvatures are those of the surfaces as drawn: they
             are of short waves, which the oil hardly changes.
         """
-        found = self.contacts(spec, length)
-        summits, weights = self._summits(spec, sharp, found.density)
+        number = self.contacts(spec, length).number
+        return number, number * self.breaking_part(spec, length, sharp)
+
+    def breaking_part(self, spec: LineSpecLike, length: float, sharp: float) -> float:
+        """Find at which fraction of the contacts theory expects the layer to break.
+
+        Parameters
+        ----------
+        spec, length, sharp
+            As in `expected`.
+        """
+        summits, weights = self._summits(spec, sharp, self.contacts(spec, length).density)
         share = excursions.sharp_surface_summit_share(*summits)
-        return found.number, found.number * np.average(share, weights=weights)
+        return np.average(share, weights=weights)
 
     def _summits(self, spec, sharp, density):
         """Films, moments and curvatures of summits at columns, and the columns' weights."""

@@ -244,7 +244,8 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
         contacts = share, *strip.common(spec, length)
         found["pair_deviation"][point] = pair_deviation(*contacts, perimeters[0])
         if recurring is not None:
-            alone = recurring.at(strip.levels(spec).min())
+            part = strip.breaking_part(spec, length, sharp[point])
+            alone = recurring.at(strip.levels(spec).min(), part)
             found["pair_deviation"][point] *= turn_ratio(*contacts, alone, perimeters) ** 0.5
     return found
 

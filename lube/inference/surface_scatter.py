@@ -20,10 +20,10 @@ from lube.contact.pair_scatter import (
     turn_ratio,
 )
 from lube.contact.rough_pair import RoughPair
-from lube.contact.surface_strip import SURFACES, strip_films
+from lube.contact.surface_strip import SURFACES, mean_breaking_curvature, strip_films
 from lube.grid.discretise import speed_ratios
-from lube.statistics.confidence import error_of_limits
 from lube.schema import LIMITS
+from lube.statistics.confidence import error_of_limits
 from lube.statistics.one_pair import prediction_limits, scatter_ratio
 from lube.surfaces.rough_surface import longest_waves
 from lube.surfaces.synthetic import LineSpecLike
@@ -202,23 +202,26 @@ def surface_scatter(
     spec, length = pair.spec, pair.length
     # Ridges across rolling are no longer along it.
     reach, recurring = longest_waves(spec)[1] / spec.spacing, RecurringContacts(spec)
-    strips = strip_films(pair, films)
+    strips, sharp = strip_films(pair, films), mean_breaking_curvature(pair, films)
     durations = turns.reshape(-1, shares.size).T.tolist()
 
     def of_record(slip, turns, share, strip):
         if strip is None or np.isnan(share):
             return [np.nan] * len(turns)
         film, common = strip.levels(spec).min(), strip.common(spec, length)
-        contacts = share, *common, recurring.at(film)
+        breaking = strip.breaking_part(spec, length, sharp)
+        contacts = share, *common, recurring.at(film, breaking)
+        broken = breaking, strip.breakthrough_width(spec, length, sharp, slip)
         passages = [strip.passage_width(spec, length, each) for each in (slip, 0.0)]
         perimeters = np.multiply(spec.points, spec.spacing)
         known, rolling = (*contacts, passages, slip, perimeters), turn_ratio(*contacts, perimeters)
-        part = persistent_part(*contacts) * spec.points[0] / spec.points / slip_ratio(*known)
+        part = persistent_part(*contacts) * spec.points[0] / spec.points
+        part = part / slip_ratio(*known, broken=broken)
         if slip == 0.0 and spec.points[0] == spec.points[1]:
             part = np.zeros(2)  # both surfaces recur together
         motion = speed_ratios(slip), spec.points, reach, part, drift
         alike = drifting_shares(share, *common, partial(recurring.drifted, film))
-        of_turn = (slip_ratio(*known, min(one, 1.0)) for one in turns)
+        of_turn = (slip_ratio(*known, min(one, 1.0), broken) for one in turns)
         later = (scatter_ratio(max(one, 1.0), *motion, alike=alike) for one in turns)
         return [first * more / rolling for first, more in zip(of_turn, later, strict=True)]
 

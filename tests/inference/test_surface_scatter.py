@@ -96,6 +96,21 @@ def test_slip_shortens_contacts_and_brings_new_alignments(busy_study):
     np.testing.assert_allclose(later, many, rtol=0.3)
 
 
+def test_the_scatter_with_slip_is_less_where_most_layers_hold(busy_study):
+    layer = busy_study.boundary_layer
+    weak, strong = (layer.model_copy(update={"shear_strength": own}) for own in (1.0, 1e6))
+    for turns in (1.0, 100.0):
+        found = [
+            scatter(
+                busy_study.model_copy(update={"boundary_layer": own}),
+                turns=turns,
+                slide_to_roll_ratio=0.37,
+            )
+            for own in (weak, strong)
+        ]
+        assert np.all(found[1] < 0.8 * found[0])
+
+
 def test_a_drift_of_the_roughness_averages_contacts_out_sooner_than_heights(busy_study):
     drifting = busy_study.model_copy(
         update={"rig": busy_study.rig.model_copy(update={"drift": 0.05})}
@@ -148,7 +163,9 @@ def test_a_film_that_is_not_known_has_no_scatter(busy_study):
 
 def test_ridges_across_rolling_need_no_longer_way_to_a_new_alignment(make_spec, layer):
     """Stretched along the rollers, as the strip is, they touch as the surface without ridges."""
-    film = xr.Dataset({"film_thickness": ("record", [7e-7]), "contact_half_width": 1.5e-4})
+    film = {"film_thickness": ("record", [7e-7]), "contact_half_width": 1.5e-4}
+    film = xr.Dataset(film | {"reduced_modulus": 1e11})
+    layer = layer.model_copy(update={"shear_strength": 1.0})  # it breaks at any contact
     # In each turn the slower surface stays behind by one and a half longest wavelengths.
     motion = np.array([0.4]), np.array([0.002]), np.array([[1.0], [20.0]]), 0.0
     found = []
