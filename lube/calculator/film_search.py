@@ -139,7 +139,7 @@ class FilmSearch:
         reached = _reached(films, thickness, levels, tried, is_rising)
         return films, reached, table_at(np.clip(films["lambda_ratio"][:1], *ends))
 
-    def films(self, half_width, points_at, table_at=None, ends=(0.0, np.inf), own=None):
+    def films(self, half_width, points_at, table_at=None, ends=(0.0, np.inf), factor_at=None):
         """Find the films at which the probability, its lower and its upper limit equal the share.
 
         Parameters
@@ -154,15 +154,15 @@ class FilmSearch:
             flattens or answers.
         ends : tuple of float, optional
             Least and greatest lambda ratio of `table_at`.
-        own : float, optional
-            Lambda ratio of the rollers, if their roughness changes and not the film. The layer's
-            strength then changes in proportion, as `required_roughness` explains.
+        factor_at : callable, optional
+            Factor of the rollers' heights at some lambda ratios, if these change and not the film.
+            The layer's strength then changes in proportion, as `required_roughness` explains.
         """
         self._rollers.lines.check_width(2.0 * half_width, "force: the contact")
         if self._assumed.wanted:
             self._assumed.check(points_at(np.clip(LAMBDA_RATIOS[[0, -1]], *ends)))
         look = self._at_surfaces if self._on_surface else self._at_lines
-        ratios, limits = look(half_width, table_at, ends, own)
+        ratios, limits = look(half_width, table_at, ends, factor_at)
         known = np.isfinite(limits[0])
         check_known(known.any())
         ratios, limits = ratios[known], [each[known] for each in limits]
@@ -191,7 +191,7 @@ class FilmSearch:
             return np.full(2, np.nan)
         return [self._crossing(ratios[known], each[known]) for each in limits]
 
-    def _at_lines(self, half_width, table_at, ends, own):
+    def _at_lines(self, half_width, table_at, ends, factor_at):
         """Films near the one sought, and the probability on lines there, with its limits."""
         spec = self._rollers.lines
         windows = spec.independent_windows(2.0 * half_width) * self._realisations
@@ -205,7 +205,7 @@ class FilmSearch:
         ratios, is_plain = LAMBDA_RATIOS, self._gap.is_plain
         if spec.is_gaussian or not is_plain:
             # A first look at flat films, on lines as drawn, says where to look.
-            first = self._windows(self._flat(ratios, half_width), own, PLAIN)
+            first = self._windows(self._flat(ratios, half_width), factor_at, PLAIN)
             first = self._sampled(first, FEW_PAIRS) if spec.is_gaussian else self._counted(first)
             found = max(_crossing(ratios, first[0], self._share), ratios[np.argmax(first[0])])
             if not is_plain:
@@ -216,11 +216,11 @@ class FilmSearch:
                 ratios = ratios[ratios < 2.0 * found * NEAR[-1]]
         table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
-        looked_at = self._windows(table, own, self._gap)
+        looked_at = self._windows(table, factor_at, self._gap)
         limits = self._counted(looked_at) if is_seen else self._sampled(looked_at, PAIRS)
         return self._ratios(table), limits
 
-    def _at_surfaces(self, half_width, table_at, ends, own):
+    def _at_surfaces(self, half_width, table_at, ends, factor_at):
         """Films near the one sought, and the probability on surfaces there, with its limits."""
         pair = self._rollers.rough_pair(self._seed, self._gap)
         # Theory for high, flat films says where to look.
@@ -230,7 +230,7 @@ class FilmSearch:
         found = max(_crossing(ratios, -np.expm1(-contacts), self._share), ratios[0])
 
         def sampled(table):
-            contact = surface_contact(pair, table, weaker=self._weaker(table, own))
+            contact = surface_contact(pair, table, weaker=self._weaker(table, factor_at))
             limits = [contact[f"breakthrough_probability{end}"].values for end in LIMITS]
             return self._ratios(table), np.stack(limits)
 
@@ -298,12 +298,12 @@ class FilmSearch:
         films = {"film_thickness": ("film", ratios * self._sigma), "contact_half_width": half_width}
         return xr.Dataset(films | {"reduced_modulus": self._rollers.pair.reduced_modulus})
 
-    def _weaker(self, table, own):
+    def _weaker(self, table, factor_at):
         """How many times weaker than the rollers' the layer is at each film, as `films` says."""
-        return 1.0 if own is None else own * self._sigma / table["film_thickness"].values
+        return 1.0 if factor_at is None else factor_at(self._ratios(table))
 
-    def _windows(self, table, own, gap):
-        layer, weaker = self._rollers.layer, self._weaker(table, own)
+    def _windows(self, table, factor_at, gap):
+        layer, weaker = self._rollers.layer, self._weaker(table, factor_at)
         return ContactWindows(self._rollers.lines, table, layer, gap, weaker)
 
     def _sampled(self, windows, pairs):

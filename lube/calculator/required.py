@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import PchipInterpolator
 
 from lube import types
 from lube.calculator.answers import Answer
@@ -26,9 +27,10 @@ from lube.calculator.rollers import Rollers
 from lube.ehl.film_formulas import formula
 from lube.grid.film_profiles import scaled_film
 from lube.grid.gap import Gap
-from lube.grid.load_sharing import surface_load_share
+from lube.grid.load_sharing import MOST, surface_load_share
 from lube.physics.pressure_laws import ROELANDS_VISCOSITY
 from lube.schema import LIMITS, values_with_limits
+from lube.study.uncertainty import deviating_lines
 
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
@@ -39,6 +41,9 @@ _ANY_OIL, _ANY = "mobilgear-shc-xmp-320", {"speed": 100.0, "temperature": 60.0}
 _HEIGHTS = "rms_roughness", "first_rms_roughness", "second_rms_roughness"
 _CHANGED = "rms_deformation", "surface_rms_deformation"
 """Variables of a film in proportion to the heights."""
+RATIOS = np.geomspace(0.25, 5.0, 24)
+"""Lambda ratios, under the film of the heights as given, of the heights that are tried. Asperities
+carry nothing beyond the last, and nearly all of the load below the first."""
 
 
 @checked
@@ -330,6 +335,7 @@ def required_roughness(
     roughness_deformation: types.RoughnessDeformation = "none",
     inlet_shear_heating: types.InletHeating = "none",
     inlet_meniscus: types.OneAmount | None = None,
+    load_sharing: types.LoadSharing = "none",
     slide_to_roll_ratio: float = 0.0,
     contact_model: types.ContactModel = "line",
     realisations: int = REALISATIONS,
@@ -348,6 +354,8 @@ def required_roughness(
         As in `lube.contact_probability`, one value of each.
     inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
         As in `lube.film`.
+    load_sharing
+        As in `lube.contact_probability`. The film is then computed for twenty other heights, too.
     share, contact_model, realisations, seed
         As in `required_film`.
     bands
@@ -367,36 +375,74 @@ def required_roughness(
     one = one_name("film_formula", film_formula)
     gap = Gap(film_shape, roughness_deformation)
     choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio
+        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
     )
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
     search = FilmSearch(assumed, share, realisations)
-    film = film_in_si(rollers, oil, force, speed, temperature, one, choices)
+
+    def film_of(rougher):
+        return film_in_si(rougher, oil, force, speed, temperature, one, choices)
+
+    film = film_of(rollers)
     own = single(film["lambda_ratio"])
     check_known(np.isfinite(own))
+
+    def factor_at(ratios):
+        return own / ratios
+
+    if load_sharing != "none":
+        factor_at = _factors(film_of, rollers, own / RATIOS)
 
     def table_at(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
         return scaled_film(film, xr.DataArray(ratios / own, dims="film"))
 
     def points_at(ratios):
-        factors = xr.DataArray(own / ratios, dims="film")
+        factors = xr.DataArray(factor_at(ratios), dims="film")
         return conditions_of(film, choices) | {"roughness_factor": factors}
 
-    found = search.films(film["contact_half_width"].item(), points_at, table_at, own=own)
-    ratios = found["lambda_ratio"]
+    half_width = film["contact_half_width"].item()
     with np.errstate(divide="ignore"):  # a limit may be 0
-        sigma, factor = rollers.pair.composite_rms_roughness * own / ratios, own / ratios
+        found = search.films(half_width, points_at, table_at, factor_at=factor_at)
+        ratios = found["lambda_ratio"]
+        factor = factor_at(ratios)
+    sigma = rollers.pair.composite_rms_roughness * factor
     found = {"roughness_factor": factor, "composite_rms_roughness": sigma, "lambda_ratio": ratios}
     changed = {name: factor[0] * film[name] for name in _CHANGED if name in film}
     if "surface_load_share" in film:  # pressures grow with heights and film
-        share = surface_load_share(table_at(ratios[:1]), rollers.lines, gap.has_shape)
-        changed["surface_load_share"] = factor[0] * share
-    rougher = copy(rollers)
-    heights = tuple(factor[0] * each for each in rollers.pair.rms_heights)
-    rougher.pair = rollers.pair.with_rms_heights(heights)
+        share_here = surface_load_share(table_at(ratios[:1]), rollers.lines, gap.has_shape)
+        changed["surface_load_share"] = factor[0] * share_here
     changed["lambda_ratio"] = xr.full_like(film["lambda_ratio"], ratios[0])
-    return _labelled(found, film.assign(changed), rougher, choices)
+    return _labelled(found, film.assign(changed), _rougher(rollers, factor[0]), choices)
+
+
+def _factors(film_of, rollers, levels):
+    """Return a function that finds the factor of the heights at some lambda ratios.
+
+    Where asperities share the load, the film grows with the heights, too.
+    """
+    films = xr.concat([film_of(_rougher(rollers, one)) for one in levels], "film")
+    known = (films["lambda_ratio"].notnull() & (films["surface_load_share"] < MOST)).values
+    check_known(known.any())
+    # The film over the rms height as given changes smoothly with the heights.
+    heights = np.log(levels[known])[::-1]
+    films = np.log(films["lambda_ratio"].values[known])[::-1] + heights
+    every = np.linspace(*heights[[0, -1]], 1000)
+    film = PchipInterpolator(heights, films)(every)
+
+    def factor_at(ratio):
+        ratio = np.log(ratio)
+        return np.exp(np.interp(ratio, (film - every)[::-1], film[::-1]) - ratio)
+
+    return factor_at
+
+
+def _rougher(rollers, factor):
+    """Return the rollers with some times their heights."""
+    changed = copy(rollers)
+    changed.lines = deviating_lines(rollers.lines, {"rms_roughness": factor - 1.0})
+    changed.pair = rollers.pair.with_rms_heights(changed.lines.rms_height)
+    return changed
 
 
 @dataclass(frozen=True)

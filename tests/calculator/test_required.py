@@ -109,6 +109,20 @@ def test_asperities_that_carry_load_leave_the_oil_a_thicker_film(rollers, oil):
         lube.required_speed(rollers, oil, share=0.3, bands=True, **given, **sharing)
 
 
+def test_rollers_whose_asperities_carry_load_may_be_rougher(rollers, oil, busy):
+    """Put in again, they have the share and the film of their own heights."""
+    sharing, given = {"load_sharing": "iterated"}, POINT | RUNS | {"share": 0.6}
+    found, whole = (
+        lube.required_roughness(rollers, oil, **given, **more) for more in (sharing, {})
+    )
+    factor = found["roughness_factor"].item()
+    assert factor > 1.01 * whole["roughness_factor"].item()
+    rougher = of_roughness(f"{0.2 * factor!r} um", busy.study.line_spec)
+    back = lube.contact_probability(rougher, oil, **POINT, **RUNS, **sharing)
+    assert back["breakthrough_probability_mean"].item() == pytest.approx(0.6, rel=0.05)
+    assert back["lambda_ratio"].item() == pytest.approx(found["lambda_ratio"].item(), rel=2e-3)
+
+
 def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers, oil, monkeypatch):
     """Beyond some speed heating makes the film thinner again: the answer lies below."""
     monkeypatch.setattr(required, "FACTORS", np.geomspace(1e-3, 1e3, 151))
