@@ -6,10 +6,11 @@ from made import made
 
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
 from lube.physics.flattening import amplitude_ratio
-from lube.schema import POINT_DIMS
+from lube.schema import LIMITS, POINT_DIMS
 from lube.stages import tail, variants
 from lube.stages.film import film_table
 from lube.stages.variants import STUDY, VARIANTS, make
+from lube.statistics.confidence import error_of_limits
 from lube.surfaces.synthetic import draw_realisation
 
 GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (60.0, 80.0)}
@@ -64,7 +65,7 @@ def test_the_surface_is_that_of_the_areal_stage_on_another_grid(found, files):
     own, areal = found.sel(variant="plain, surface"), files["areal"].squeeze()
     name = "breakthrough_probability"
     for one in (own, areal):
-        one["error"] = (one[f"{name}_upper"] - one[f"{name}_lower"]) / 4.0
+        one["error"] = one[name].dims, error_of_limits([one[name + end].values for end in LIMITS])
     difference = own[name] - areal[name].transpose(*own[name].dims)
     error = np.hypot(own["error"], areal["error"].transpose(*own[name].dims))
     assert (np.abs(difference) <= 4.0 * error).all() and (error < 0.1 * own[name]).all()
