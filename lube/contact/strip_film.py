@@ -213,7 +213,7 @@ class StripFilm:
         more = excursions.sharpening_summits(*summits, summit_motion(spec, slide_to_roll_ratio))
         share, more = (np.average(each, weights=weights) for each in (share, more))
         # Curvatures are integrated as far as 9 standard deviations: a smaller share tells nothing.
-        return share / (share / passage + more) if share > 1e-15 else passage
+        return share / (share / passage + more) if share > 1e-30 else passage
 
     def common(self, spec: LineSpecLike, length: float) -> Pair:
         """Find which contacts two strips have in common, in pure rolling.
