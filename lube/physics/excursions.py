@@ -515,15 +515,15 @@ def _above(level, moments, weight, nodes):
     mean = covariance / m0 * height
     deviation = np.sqrt(variance - covariance**2 / m0)
 
-    def at_heights(kappa):
+    def at_heights(kappa, weights=1.0):
         normal = np.exp(-0.5 * ((kappa - mean[..., None]) / deviation[..., None]) ** 2)
-        return weight(kappa, mean[..., None]) * normal
+        return weights * weight(kappa, mean[..., None]) * normal
 
     def sharper(least):
         low = np.maximum(_apart(least), mean - _WIDE * deviation)
         half = 0.5 * np.maximum(mean + _WIDE * deviation - low, 0.0)
         kappa = (low + half)[..., None] + half[..., None] * curvatures
-        inner = half * np.sum(curvature_weights * at_heights(kappa), axis=-1)
+        inner = half * np.sum(at_heights(kappa, curvature_weights), axis=-1)
         return np.sum(heights * inner, axis=-1)
 
     def at(kappa):
