@@ -12,10 +12,10 @@ from lube.calculator.one_point import profile as profile
 from lube.calculator.one_point import trace as trace
 from lube.calculator.planning import plan as plan
 from lube.calculator.required import required_film as required_film
-from lube.calculator.required import required_roughness as required_roughness
 from lube.calculator.required import required_speed as required_speed
 from lube.calculator.required import required_temperature as required_temperature
 from lube.calculator.required import required_viscosity as required_viscosity
+from lube.calculator.required_roughness import required_roughness as required_roughness
 from lube.calculator.rollers import Rollers as Rollers
 from lube.ehl.film_formulas import FORMULAS as FORMULAS
 from lube.errors import DataError as DataError

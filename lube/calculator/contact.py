@@ -14,7 +14,7 @@ from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
 from lube.calculator.film import conditions_of, film_in_si, formula_names, of_film, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
-from lube.contact.ensemble import PROBABILITIES, with_limits, with_pair_limits
+from lube.contact.ensemble import with_limits, with_pair_limits
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
@@ -225,7 +225,8 @@ def ensemble(pair: RoughPair, table: xr.Dataset, realisations: int, slip: float)
     counts = on_threads(of_realisation, range(realisations), name="contact of lines")
     shares = np.reshape(np.moveaxis(counts, -1, 0), (2, -1, *thickness.shape))
     dims = "realisation", *thickness.dims
-    contact = {n: (dims, each) for n, each in zip(PROBABILITIES[::-1], shares, strict=True)}
+    touched, broken = ((dims, each) for each in shares)
+    contact = {"geometric_contact_probability": touched, "breakthrough_probability": broken}
     levels = {"realisation": np.arange(realisations), **thickness.coords}
     independent = spec.independent_windows(width, min(speed_ratios(slip)))
     found = with_limits(xr.Dataset(contact, levels, {"seed": pair.seed}), independent)

@@ -1,25 +1,30 @@
 """Search for the film that keeps contact below a share of time."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
+from lube.calculator.answers import Answer
 from lube.calculator.arguments import bare_number, check_realisations
 from lube.calculator.bands import Assumptions
-from lube.calculator.film import conditions_of
+from lube.calculator.choices import Choices
+from lube.calculator.film import conditions_of, with_remarks
+from lube.calculator.rollers import Rollers
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import strip_films, surface_contact
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError, shown
 from lube.grid.gap import PLAIN
 from lube.physics.excursions import expected_contacts
-from lube.schema import LIMITS
+from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import contact_curve, peaked_curve
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
+from lube.types import Array
 
 LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 """Lambda ratios of the first look; at the highest, contact has a probability of 1e-37."""
@@ -350,3 +355,27 @@ def _reached(films, thickness, levels, tried, is_rising):
         given = f"no {tried} gives more than {most:.3g} um"
         raise RangeError(f"share: this share needs a {needed}, and {given}")
     return np.interp(sought, thickness, levels, left, right)
+
+
+def labelled(
+    found: Mapping[str, Array], film: xr.Dataset, rollers: Rollers, choices: Choices
+) -> Answer:
+    """Answer of what was found, with remarks on the film found.
+
+    Parameters
+    ----------
+    found : dict of str to numpy.ndarray
+        By name the value, its two limits and, with bands, two more over what is not known exactly.
+    film : xarray.Dataset
+        Film table at the film found.
+    rollers : Rollers
+        The two rollers.
+    choices : Choices
+        With the contact model.
+    """
+    rows = {}
+    for name, (value, *limits) in found.items():
+        rows |= values_with_limits(name, [value, *np.sort(limits[:2])])
+        assumed = zip(LIMITS[1:], np.sort(limits[2:]), strict=False)
+        rows |= {f"assumed_{name}{end}": limit for end, limit in assumed}
+    return with_remarks(xr.Dataset(rows), film, rollers, choices.models)

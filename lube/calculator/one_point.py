@@ -89,7 +89,7 @@ def trace(
     lines = roughness_batch(rollers.lines, seed, [0])
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity, gap)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
-    if inlet_shear_heating == "none":
+    if inlet_shear_heating == "none":  # the factor is known, but thins no film
         del table["inlet_shear_heating_factor"]
     return with_remarks(found[names].isel(operating_point=0).drop_attrs(), table, rollers)
 

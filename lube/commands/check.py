@@ -79,7 +79,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
 
 
 def _own_remarks(path, study, changes):
-    """Say what is that of the study's base, why contact is not sampled, and unsuitable ranges."""
+    """List what the study takes from its base, why contact is counted, and unsuitable ranges."""
     content = read_yaml(path, StudyError)
     base, own = content.get("based_on"), merged(content, changes)
     if base and study.about.creators and "creators" not in (own.get("about") or ()):

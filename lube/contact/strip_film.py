@@ -14,7 +14,7 @@ import scipy
 
 from lube.contact.surface_answers import AnsweredStrip, moments_in_gap, summit_moments
 from lube.grid.operating_points import surface_speeds
-from lube.physics import excursions
+from lube.physics import excursions, summits
 from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.rare_contact import likely_part
 from lube.surfaces.rough_surface import Surface, surface_waves
@@ -159,8 +159,8 @@ class StripFilm:
         spec, length, sharp
             As in `expected`.
         """
-        summits, weights = self._summits(spec, sharp, self.contacts(spec, length).density)
-        share = excursions.sharp_surface_summit_share(*summits)
+        known, weights = self._summits(spec, sharp, self.contacts(spec, length).density)
+        share = summits.sharp_surface_summit_share(*known)
         return np.average(share, weights=weights)
 
     def _summits(self, spec, sharp, density):
@@ -208,9 +208,9 @@ class StripFilm:
         passage = found.number / found.appearing
         if slide_to_roll_ratio == 0.0:
             return passage
-        summits, weights = self._summits(spec, sharp, found.density)
-        share = excursions.sharp_surface_summit_share(*summits)
-        more = excursions.sharpening_summits(*summits, summit_motion(spec, slide_to_roll_ratio))
+        known, weights = self._summits(spec, sharp, found.density)
+        share = summits.sharp_surface_summit_share(*known)
+        more = summits.sharpening_summits(*known, summit_motion(spec, slide_to_roll_ratio))
         share, more = (np.average(each, weights=weights) for each in (share, more))
         # Curvatures are integrated as far as 9 standard deviations: a smaller share tells nothing.
         return share / (share / passage + more) if share > 1e-30 else passage
@@ -306,7 +306,7 @@ def curvature_moments(spec: LineSpecLike) -> Array | None:
     Returns
     -------
     numpy.ndarray, shape (3, 3)
-        As in `lube.physics.excursions.sharp_surface_summit_share`; None without a lay.
+        As in `lube.physics.summits.sharp_surface_summit_share`; None without a lay.
     """
     if all(line.lay_ratio == 1.0 for line in spec.lines):
         return None
@@ -327,7 +327,7 @@ def curvature_moments(spec: LineSpecLike) -> Array | None:
     return found
 
 
-def summit_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> excursions.SummitMotion:
+def summit_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> summits.SummitMotion:
     """How the summits of both surfaces together change while they slide over one another.
 
     Parameters
@@ -359,7 +359,7 @@ def summit_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> excursions.
     inverse = np.array([[second[1], -first[1]], [-first[1], first[0]]])
     inverse /= first[0] * second[1] - first[1] ** 2
     gradients -= np.einsum("ij,jk,km->im", mixed, inverse, mixed)
-    return excursions.SummitMotion(change, moving, gradients)
+    return summits.SummitMotion(change, moving, gradients)
 
 
 @functools.lru_cache(maxsize=1)

@@ -36,7 +36,7 @@ from lube.contact.waves import answers_at
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
 from lube.kernels.areal import BLOCK, GROUP, NO_ANSWER, contacts_per_row, touching_strips
-from lube.physics.excursions import breaking_curvature
+from lube.physics.summits import breaking_curvature
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, jackknife_interval, mean_interval
 from lube.study.surface_checks import check_surfaces
@@ -337,7 +337,7 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     rows = max(int(pair.length / down), 1)
     results = {}
     for which, (name, of_contacts) in enumerate(_COUNTS.items()):
-        # Even about the number of first contacts, for near 1 the probability scatters to one side.
+        # The limits are even in the number of contacts: near 1 a probability scatters to one side.
         limits = jackknife_interval(first[:, :, which], partial(first_contacts, rows=rows))
         results |= values_with_limits(name, [-np.expm1(-each) for each in limits])
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))

@@ -17,7 +17,8 @@ from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_
 from lube.inference.at_records import film_at_records
 from lube.inference.record_curves import RecordCurves, curve_offsets
 from lube.inference.surface_scatter import revolution_size, surface_scatter
-from lube.physics.excursions import expected_contacts, sharp_surface_summit_share
+from lube.physics.excursions import expected_contacts
+from lube.physics.summits import sharp_surface_summit_share
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.confidence import error_of_limits
 from lube.statistics.curves import contact_curve

@@ -69,7 +69,10 @@ class _Oil(NamedTuple):
 
 
 class _Rows(NamedTuple):
-    """Heights of a strip, filled in row by row: each row has the number of its strip if it is."""
+    """Heights of a strip, computed when a row is needed.
+
+    `filled` has the number of the strip whose heights are in each row.
+    """
 
     heights: Array
     filled: Array
@@ -95,7 +98,7 @@ class _MovedSurface(NamedTuple):
 
 
 class _Search(NamedTuple):
-    """A search for contacts: the strip, as in `touching_strips`, and marks of points seen."""
+    """A search for contacts: the strip, as in `touching_strips`, and the marks of points found."""
 
     film: Array
     sharp: Array

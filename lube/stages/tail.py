@@ -11,7 +11,8 @@ from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import Gap
 from lube.grid.operating_points import over_contact_models, surface_speeds
-from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
+from lube.physics.excursions import crossing_rate
+from lube.physics.summits import breaking_curvature, sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, mean_interval
 from lube.statistics.sample_size import independent_windows

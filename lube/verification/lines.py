@@ -13,7 +13,8 @@ from lube.contact.windows import ContactWindows
 from lube.grid.discretise import layer_factor_of
 from lube.grid.films import film_at
 from lube.kernels.layer import layer_breaks
-from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
+from lube.physics.excursions import crossing_rate
+from lube.physics.summits import breaking_curvature, sharp_summit_share
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import ROLLERS
 from lube.study.study import Study

@@ -6,6 +6,17 @@ import numpy as np
 import pytest
 import xarray as xr
 from made import on_few_surfaces
+from put_in_again import (
+    CHOICES,
+    FEW,
+    POINT,
+    RUNS,
+    SURFACE,
+    assert_has_the_share,
+    of_roughness,
+    probability,
+    without,
+)
 
 import lube
 from lube import LubeError, Rollers
@@ -15,20 +26,8 @@ from lube.calculator.contact import ensemble
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN
 
-RUNS = {"realisations": 32, "seed": 2}
 ONE = {"realisations": 1, "seed": 2}
-FEW = {"realisations": 8, "seed": 2}
 SHARE = 0.05
-POINT = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
-
-
-def without(name):
-    return {key: value for key, value in POINT.items() if key != name}
-
-
-def probability(rollers, oil, **changes):
-    found = lube.contact_probability(rollers, oil, **POINT | changes, **RUNS)
-    return found["breakthrough_probability_mean"].item()
 
 
 @pytest.fixture(scope="module")
@@ -109,20 +108,6 @@ def test_asperities_that_carry_load_leave_the_oil_a_thicker_film(rollers, oil):
         lube.required_speed(rollers, oil, share=0.3, bands=True, **given, **sharing)
 
 
-def test_rollers_whose_asperities_carry_load_may_be_rougher(rollers, oil, busy):
-    """Put in again, they have the share and the film of their own heights."""
-    sharing, given = {"load_sharing": "iterated"}, POINT | RUNS | {"share": 0.6}
-    found, whole = (
-        lube.required_roughness(rollers, oil, **given, **more) for more in (sharing, {})
-    )
-    factor = found["roughness_factor"].item()
-    assert factor > 1.01 * whole["roughness_factor"].item()
-    rougher = of_roughness(f"{0.2 * factor!r} um", busy.study.line_spec)
-    back = lube.contact_probability(rougher, oil, **POINT, **RUNS, **sharing)
-    assert back["breakthrough_probability_mean"].item() == pytest.approx(0.6, rel=0.05)
-    assert back["lambda_ratio"].item() == pytest.approx(found["lambda_ratio"].item(), rel=2e-3)
-
-
 def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers, oil, monkeypatch):
     """Beyond some speed heating makes the film thinner again: the answer lies below."""
     monkeypatch.setattr(required, "FACTORS", np.geomspace(1e-3, 1e3, 151))
@@ -142,25 +127,6 @@ def test_speed_and_viscosity_give_the_film_of_a_heated_and_starved_inlet(rollers
     assert 1e6 * film == pytest.approx(found["film_thickness"].item(), rel=3e-3)
 
 
-def of_roughness(rms, spec):
-    """Rollers as those of the tests, but of another rms roughness."""
-    lengths = {
-        "longest_wavelength": f"{2.0 * np.pi / spec.q_min!r} m",
-        "shortest_wavelength": f"{10.0 * spec.spacing!r} m",
-    }
-    return Rollers("50 mm", rms, points=50_000, shear_strength="0.2 MPa", **lengths)
-
-
-def test_the_roughness_has_the_share(rollers, oil, busy):
-    """Rollers of that roughness, drawn anew, have the share asked for."""
-    found = lube.required_roughness(rollers, oil, **POINT, share=0.02, **RUNS)
-    assert found["roughness_factor"].attrs["units"] == "1"
-    rms = f"{0.2 * found['roughness_factor'].item()!r} um"
-    smoother = of_roughness(rms, busy.study.line_spec)
-    assert probability(smoother, oil) == pytest.approx(0.02, rel=0.05)
-    assert probability(rollers, oil) > 0.04
-
-
 @pytest.mark.parametrize("share", [1e-6, 1e-12, 1e-25])
 def test_a_share_may_be_as_rare_as_one_likes(rollers, oil, share):
     """Put in again, it is the probability by importance sampling."""
@@ -172,17 +138,6 @@ def test_a_share_may_be_as_rare_as_one_likes(rollers, oil, share):
     assert back["tail_breakthrough_probability"].item() == pytest.approx(share, rel=0.05)
     limits = [found[f"film_thickness{limit}"].item() for limit in ("_lower", "", "_upper")]
     assert limits == sorted(limits) and limits[2] / limits[0] < 1.02
-
-
-def test_the_roughness_may_be_for_a_rare_share(rollers, oil, busy):
-    found = lube.required_roughness(rollers, oil, **POINT, share=1e-7, **RUNS)
-    rms = f"{0.2 * found['roughness_factor'].item()!r} um"
-    smoother = of_roughness(rms, busy.study.line_spec)
-    back = lube.contact_probability(smoother, oil, **POINT, realisations=1, seed=2)
-    assert back["tail_breakthrough_probability"].item() == pytest.approx(1e-7, rel=0.05)
-
-
-CHOICES = {"film_shape": "computed", "roughness_deformation": "venner-1997"}
 
 
 @pytest.mark.parametrize(
@@ -206,16 +161,6 @@ def test_under_any_film_what_is_found_has_the_share(rollers, oil, inverse, name,
     back = lube.contact_probability(rollers, oil, **POINT | {name: (level, unit)}, **choices)
     assert back["breakthrough_probability_mean"].item() == pytest.approx(0.02, rel=0.05)
     assert found["lambda_ratio"].item() == pytest.approx(back["lambda_ratio"].item(), rel=1e-3)
-
-
-def test_under_any_film_the_roughness_has_the_share(rollers, oil, busy):
-    """Rollers of that roughness, drawn anew."""
-    choices = CHOICES | FEW
-    found = lube.required_roughness(rollers, oil, **POINT, share=0.02, **choices)
-    rms = f"{0.2 * found['roughness_factor'].item()!r} um"
-    smoother = of_roughness(rms, busy.study.line_spec)
-    back = lube.contact_probability(smoother, oil, **POINT, **choices)
-    assert back["breakthrough_probability_mean"].item() == pytest.approx(0.02, rel=0.05)
 
 
 @pytest.mark.usefixtures("few_pairs")
@@ -244,15 +189,6 @@ def test_a_rare_share_of_lines_that_the_oil_answers(rollers, oil, monkeypatch):
     assert probability == pytest.approx(1e-4, rel=0.1)
     rolling = lube.contact_probability(rollers, oil, **point, **gap)
     assert abs(np.log(rolling["tail_breakthrough_probability"].item() / probability)) > 0.02
-
-
-SURFACE = {"contact_model": "surface", "seed": 2}
-
-
-def assert_has_the_share(found, share):
-    """The interval is as wide as the share is badly known."""
-    lower, upper = (found[f"surface_breakthrough_probability{end}"] for end in ("_lower", "_upper"))
-    assert abs(lower + upper - 2.0 * share) < 1.5 * (upper - lower) < 0.5 * share
 
 
 @pytest.mark.parametrize(
@@ -285,15 +221,6 @@ def test_on_the_surface_films_are_searched_until_their_limits_enclose_the_share(
         found = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **choices)
     assert found["speed"] == pytest.approx(usual["speed"].item(), rel=0.01)
     assert found["speed_lower"] < usual["speed"] < found["speed_upper"]
-
-
-def test_on_the_surface_the_roughness_has_the_share(rollers, oil, busy):
-    """Rollers of that roughness, drawn anew."""
-    with on_few_surfaces(10):
-        found = lube.required_roughness(rollers, oil, **POINT, share=0.2, **SURFACE)
-        rms = f"{0.2 * found['roughness_factor'].item()!r} um"
-        smoother = of_roughness(rms, busy.study.line_spec)
-        assert_has_the_share(lube.contact_probability(smoother, oil, **POINT, **SURFACE), 0.2)
 
 
 def test_a_choice_that_no_study_has_is_refused(rollers, oil):
@@ -414,15 +341,6 @@ def test_the_impossible_is_refused_in_one_line(rollers, oil, ask, message):
     with pytest.raises(LubeError) as error:
         ask(rollers, oil)
     assert message in str(error.value)
-
-
-def test_rollers_may_be_much_rougher_than_those_given(rollers, oil, busy):
-    """The film with a shape is needed as far as the rougher rollers touch."""
-    given = POINT | {"share": 0.2, "film_shape": "computed"} | FEW
-    found = lube.required_roughness(rollers, oil, **given)["composite_rms_roughness"].item()
-    smooth = of_roughness("0.02 um", busy.study.line_spec)
-    same = lube.required_roughness(smooth, oil, **given)["composite_rms_roughness"].item()
-    assert same == pytest.approx(found, rel=2e-3)
 
 
 @pytest.mark.parametrize("share", [0.05, 1e-9])
