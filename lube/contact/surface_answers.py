@@ -10,7 +10,7 @@ import scipy
 
 from lube.contact.waves import FINER, PRECISION, STEEPNESS, Answer, expanded
 from lube.ehl.response import at_wavelengths
-from lube.kernels.areal import Answered
+from lube.kernels.moved_surface import Answered
 from lube.surfaces.rough_surface import Surface
 from lube.threads import on_threads
 from lube.types import Array, Pair

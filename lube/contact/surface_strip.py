@@ -35,7 +35,8 @@ from lube.contact.surface_answers import COARSEST, AnsweredStrip, SurfaceAnswer
 from lube.contact.waves import answers_at
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
-from lube.kernels.areal import BLOCK, GROUP, NO_ANSWER, contacts_per_row, touching_strips
+from lube.kernels.areal import BLOCK, GROUP, contacts_per_row, touching_strips
+from lube.kernels.moved_surface import NO_ANSWER
 from lube.physics.summits import breaking_curvature
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, jackknife_interval, mean_interval

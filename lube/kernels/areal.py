@@ -1,100 +1,36 @@
 """Contacts of a rough surface in a strip, found from one point that is known to touch.
 
-Heights are height steps in single precision, as in `lube.kernels.tail`. The strip is the contact
-area: its rows lie across it, in the direction of rolling, and follow one another along the rollers.
-A *contact* is a group of touching points that are neighbours in a row or a column, or along the
-diagonal in the direction of oblique ridges, which are narrow on the grid.
-
-The oil may answer the surface: its pressure flattens the waves in the contact. What it adds to the
-heights is smooth, so it is computed at some points, the nodes, and taken as linear between them.
+The strip is the contact area: its rows lie across it, in the direction of rolling, and follow one
+another along the rollers. The surface in it is that of `lube.kernels.moved_surface`. A *contact* is
+a group of touching points that are neighbours in a row or a column, or along the diagonal in the
+direction of oblique ridges, which are narrow on the grid.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from lube.kernels.compiler import inlined, kernel
+from lube.kernels.compiler import kernel
+from lube.kernels.moved_surface import (
+    Answered,
+    MovedSurface,
+    Oil,
+    Rows,
+    along,
+    at_point,
+    column_of_covariances,
+    fill_by_known,
+    fill_nodes,
+    fill_row,
+    most_added,
+    node_before,
+)
 from lube.types import Array, Pair
 
 BLOCK = 32
 """Number of points of a row that are searched, or skipped, together."""
 GROUP = 16
 """Number of rows that are skipped together."""
-
-
-class Answered(NamedTuple):
-    """What the oil adds to a surface in a strip.
-
-    Attributes
-    ----------
-    fields : numpy.ndarray
-        M filtered surfaces at every 2^`shift`-th point, the first row and column repeated at the
-        end, shape (nodes, nodes, M), float32 height steps.
-    shapes : numpy.ndarray
-        Functions of the position across the strip that multiply the filtered surfaces, at the n
-        nodes of the strip, shape (n, M), float32.
-    covariances : numpy.ndarray
-        Shape (2, n, R', n), float32: what the oil adds to the covariance of the height at a node
-        of the strip with heights, and with curvatures as drawn, in R' rows of nodes around it and
-        at each node across the strip; over the variance of the heights as drawn.
-    first : int
-        Row of the first of these rows of nodes, counted from that of the height.
-    shift : int
-        Binary logarithm of the number of points from node to node.
-    """
-
-    fields: Array
-    shapes: Array
-    covariances: Array
-    first: int
-    shift: int
-
-
-_NOTHING = np.zeros((2, 2, 0), np.float32)
-NO_ANSWER = Answered(_NOTHING, _NOTHING[0, :0], np.zeros((2, 2, 2, 0), np.float32), 0, 30)
-"""The oil does not change the surface."""
-
-
-class _Oil(NamedTuple):
-    """What the oil adds to a strip: `Answered`, and what is computed of it for this strip.
-
-    The covariances with the known point, shape (2, R', n); room for a row of nodes; and the most
-    that the oil adds in each row of nodes, NaN before it is known.
-    """
-
-    answered: Answered
-    by_known: Array
-    nodes: Array
-    highest: Array
-
-
-class _Rows(NamedTuple):
-    """Heights of a strip, computed when a row is needed.
-
-    `filled` has the number of the strip whose heights are in each row.
-    """
-
-    heights: Array
-    filled: Array
-    strip: int
-
-
-class _MovedSurface(NamedTuple):
-    """A surface in a strip, moved by `rise` times the covariance with the known point.
-
-    The known point lies in row `reach` of the covariances, in row `first_row` of the surface, and
-    in column `origin` of the strip, which begins in column `first_column` of the surface.
-    """
-
-    fields: Pair
-    covariances: Pair
-    reach: int
-    first_row: int
-    first_column: int
-    origin: int
-    rise: float
-    oil: _Oil
-    rows: _Rows
 
 
 class _Search(NamedTuple):
@@ -166,7 +102,7 @@ def touching_strips(
         back through all R rows. A contact that begins as many rows back, or more, is too long for
         the sums over first contacts.
     answered : Answered
-        What the oil adds to the surface; `NO_ANSWER` if it does not change it.
+        What the oil adds to the surface; `lube.kernels.moved_surface.NO_ANSWER` if nothing.
     diagonal : int
         1 if points are neighbours of those in the next row and the next column too, -1 if of those
         in the next row and the column before, 0 if of neither.
@@ -203,15 +139,15 @@ def touching_strips(
     highest = np.empty(by_known.shape[1], np.float32)  # what the oil adds at most, rows of nodes
     for k in range(places[0].size):
         origin = touching[0][k]
-        node, part = _node(origin, answered.shift)
-        _fill_by_known(by_known, answered, node, part)
+        node, part = node_before(origin, answered.shift)
+        fill_by_known(by_known, answered, node, part)
         highest[:] = np.nan
-        oil, own_rows = _Oil(answered, by_known, nodes, highest), _Rows(heights, filled, k)
+        oil, own_rows = Oil(answered, by_known, nodes, highest), Rows(heights, filled, k)
         place = reach, places[0][k], places[1][k], origin
-        drawn = _MovedSurface(fields, covariances, *place, unmoved, oil, own_rows)
-        variance = one + _along(by_known[0, -answered.first], origin, answered.shift)
-        rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
-        moved = _MovedSurface(fields, covariances, *place, rise, oil, own_rows)
+        drawn = MovedSurface(fields, covariances, *place, unmoved, oil, own_rows)
+        variance = one + along(by_known[0, -answered.first], origin, answered.shift)
+        rise = (touching[1][k] - at_point(0, drawn, known_row, origin)) / variance
+        moved = MovedSurface(fields, covariances, *place, rise, oil, own_rows)
         own, others_too = np.int32(2 * k + 1), np.int32(2 * k + 2)
         search = _Search(film, sharp, fading, seen, own, stack, diagonal)
         chosen, points, breaks, first = _contact(moved, search, known_row, origin)
@@ -257,18 +193,6 @@ def touching_strips(
 
 
 @kernel
-def _fill_by_known(by_known, answered, node, part):
-    """Fill in what the oil adds to the covariances with the known point, between two nodes."""
-    # Numba takes seconds to compile the same with whole arrays, whose shapes it compares.
-    for surface in range(2):
-        for lag in range(by_known.shape[1]):
-            for at in range(by_known.shape[2]):
-                here = answered.covariances[surface, node, lag, at]
-                there = answered.covariances[surface, node + 1, lag, at]
-                by_known[surface, lag, at] = here + part * (there - here)
-
-
-@kernel
 def contacts_per_row(
     fields: Pair,
     covariances: Pair,
@@ -304,10 +228,10 @@ def contacts_per_row(
     strip_nodes = answered.shapes.shape[0]
     by_known = np.zeros((2, answered.covariances.shape[2], strip_nodes), np.float32)
     nodes, fading = np.empty(strip_nodes, np.float32), np.zeros(film.size)
-    oil = _Oil(answered, by_known, nodes, np.empty(0, np.float32))
+    oil = Oil(answered, by_known, nodes, np.empty(0, np.float32))
     for k in range(places[0].size):
         place = reach, places[0][k], places[1][k], origin
-        moved = _MovedSurface(fields, covariances, *place, unmoved, oil, _Rows(heights, filled, k))
+        moved = MovedSurface(fields, covariances, *place, unmoved, oil, Rows(heights, filled, k))
         search = _Search(film, sharp, fading, seen, np.int32(k + 1), stack, diagonal)
         for row in range(first, around + 1):
             found = _row(moved, search, row, search.mark)
@@ -328,7 +252,7 @@ def _row(moved, search, row, followed):
     film, seen, mark, reach = search.film, search.seen, search.mark, moved.reach
     heights, filled, strip = moved.rows
     if filled[reach + row] != strip:
-        _fill_row(moved, row)
+        fill_row(moved, row)
     for column in range(film.size):
         before = seen[reach + row, column]
         if heights[reach + row, column] > film[column] and before != mark and before != followed:
@@ -340,30 +264,6 @@ def _row(moved, search, row, followed):
                 broken_points += own_points
                 earliest = min(earliest, first)
     return contacts, broken, points, broken_points, earliest
-
-
-@kernel
-def _fill_row(moved, row):
-    """Fill in the heights of a row, counted from the known one."""
-    at, rise, first, from_known = moved.reach + row, moved.rise, moved.first_column, _from(moved)
-    rows, filled, strip = moved.rows
-    filled[at] = strip
-    heights, width, nodes = rows[at], rows.shape[1], moved.oil.nodes
-    drawn = moved.fields[0][moved.first_row + row, first : first + width]
-    known = moved.covariances[0][at, from_known : from_known + width]
-    for column in range(width):  # without a branch, so the compiler vectorises it
-        heights[column] = drawn[column] + known[column] * rise
-    if nodes.size > 0:
-        _fill_nodes(moved, row)
-        shift = moved.oil.answered.shift
-        for column in range(width):
-            heights[column] += _along(nodes, column, shift)
-
-
-@inlined
-def _from(moved):
-    """Column of the covariances that belongs to the first column of the strip."""
-    return moved.covariances[0].shape[1] // 2 - moved.origin
 
 
 @kernel
@@ -382,10 +282,10 @@ def _lie_low(moved, tops, known, least, last):
     most = max(known[2, reach + last] * rise, known[3, reach + last] * rise)
     if moved.oil.nodes.size > 0:
         before = max(last - GROUP + 1, -reach) >> answered.shift
-        added = _most_added(moved, before - answered.first)
+        added = most_added(moved, before - answered.first)
         while before <= last >> answered.shift:
             before += 1
-            added = max(added, _most_added(moved, before - answered.first))
+            added = max(added, most_added(moved, before - answered.first))
         most += added
     group, first = (moved.first_row + last) // GROUP, moved.first_column // BLOCK
     for block in range(least.size):
@@ -404,8 +304,8 @@ def _touches(moved, tops, known, film, least, row):
     if nodes.size > 0:
         # Between rows of nodes, what the oil adds is linear.
         before = (row >> shift) - answered.first
-        most += max(_most_added(moved, before), _most_added(moved, before + 1))
-    first_column, from_known = moved.first_column, _from(moved)
+        most += max(most_added(moved, before), most_added(moved, before + 1))
+    first_column, from_known = moved.first_column, column_of_covariances(moved)
     first, filled = first_column // BLOCK, False
     for block in range(least.size):
         top = tops[0][here, min(first + block, tops[0].shape[1] - 1)]
@@ -414,81 +314,17 @@ def _touches(moved, tops, known, film, least, row):
         begin = max((first + block) * BLOCK - first_column, 0)
         end = min((first + block + 1) * BLOCK - first_column, film.size)
         if nodes.size > 0 and not filled:
-            _fill_nodes(moved, row)
+            fill_nodes(moved, row)
             filled = True
         touched = False
         for column in range(begin, end):
             height = heights[first_column + column]
             height += covariances[from_known + column] * rise
-            height += _along(nodes, column, shift)
+            height += along(nodes, column, shift)
             touched |= height > film[column]
         if touched:
             return True
     return False
-
-
-@inlined
-def _moved(surface, moved, row, column):
-    """Height (0) or curvature (1) at a point of the strip, rows counted from the known one."""
-    known = moved.covariances[surface][moved.reach + row, _from(moved) + column]
-    drawn = moved.fields[surface][moved.first_row + row, moved.first_column + column]
-    found = drawn + known * moved.rise
-    if moved.oil.nodes.size > 0:
-        node, part = _node(column, moved.oil.answered.shift)
-        left = _at_node(surface, moved, row, node)
-        found += left + part * (_at_node(surface, moved, row, node + 1) - left)
-    return found
-
-
-@kernel
-def _most_added(moved, before):
-    """Find the most that the oil adds in a row of nodes."""
-    highest, answered = moved.oil.highest, moved.oil.answered
-    if np.isnan(highest[before]):
-        _fill_nodes(moved, (answered.first + before) << answered.shift)
-        highest[before] = moved.oil.nodes.max()
-    return highest[before]
-
-
-@kernel
-def _fill_nodes(moved, row):
-    """Fill in what the oil adds to a row at the nodes."""
-    nodes = moved.oil.nodes
-    for node in range(nodes.size):
-        nodes[node] = _at_node(0, moved, row, node)
-
-
-@kernel
-def _at_node(surface, moved, row, node):
-    """Find what the oil adds to `_moved` at a node of the strip."""
-    answered, by_known = moved.oil.answered, moved.oil.by_known
-    fields, shapes, shift = answered.fields, answered.shapes, answered.shift
-    added = np.float32(0.0)
-    if surface == 0:
-        column = (moved.first_column >> shift) + node
-        upper, part = _node(moved.first_row + row, shift)
-        for m in range(shapes.shape[1]):
-            here = fields[upper, column, m]
-            added += shapes[node, m] * (here + part * (fields[upper + 1, column, m] - here))
-    lag, part = _node(row - (answered.first << shift), shift)
-    here = by_known[surface, lag, node]
-    return added + moved.rise * (here + part * (by_known[surface, lag + 1, node] - here))
-
-
-@inlined
-def _along(nodes, column, shift):
-    """Value at a column of the strip, between nodes; 0 without nodes."""
-    if nodes.size == 0:
-        return np.float32(0.0)
-    node, part = _node(column, shift)
-    return nodes[node] + part * (nodes[node + 1] - nodes[node])
-
-
-@inlined
-def _node(point, shift):
-    """Node before a point, and the part of the distance to the next node."""
-    node = point >> shift
-    return node, np.float32(point - (node << shift)) / np.float32(1 << shift)
 
 
 @kernel
@@ -503,7 +339,7 @@ def _contact(moved, search, row, column):
     # Taken out of their tuples before the loop, in which Numba would count references each time.
     heights, filled, strip = moved.rows
     if filled[reach + row] != strip:
-        _fill_row(moved, row)
+        fill_row(moved, row)
     ahead = seen.shape[0] - reach - 1
     seen[reach + row, column] = mark
     stack[0, 0], stack[0, 1] = row, column
@@ -524,7 +360,7 @@ def _contact(moved, search, row, column):
             if not inside or seen[reach + next_row, next_column] == mark:
                 continue
             if filled[reach + next_row] != strip:
-                _fill_row(moved, next_row)
+                fill_row(moved, next_row)
             overlap = heights[reach + next_row, next_column] - film[next_column]
             if overlap > 0.0:
                 seen[reach + next_row, next_column] = mark
@@ -533,5 +369,5 @@ def _contact(moved, search, row, column):
                 chosen += np.exp(-fading[next_column] * overlap)
                 if overlap > highest:
                     highest, summit_row, summit_column = overlap, next_row, next_column
-    breaks = _moved(1, moved, summit_row, summit_column) > search.sharp[summit_column]
+    breaks = at_point(1, moved, summit_row, summit_column) > search.sharp[summit_column]
     return chosen, points, breaks, earliest

@@ -5,7 +5,8 @@ import pytest
 import scipy.ndimage
 from scipy.interpolate import RegularGridInterpolator
 
-from lube.kernels.areal import BLOCK, GROUP, NO_ANSWER, Answered, contacts_per_row, touching_strips
+from lube.kernels.areal import BLOCK, GROUP, contacts_per_row, touching_strips
+from lube.kernels.moved_surface import NO_ANSWER, Answered
 
 REACH, AROUND, WIDTH = 60, 20, 24
 ACROSS = np.linspace(-1.0, 1.0, WIDTH)
