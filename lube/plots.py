@@ -59,7 +59,7 @@ _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
 _FOOTNOTE_LINE = 130  # characters that fit below a figure
 _MOST_LABELS = 9  # on a logarithmic axis
 _CHARACTER = 0.07  # width of a character of a tick label, inches
-_SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=[)>]) |(?<=pair) ")  # also after (a), > and pair
+_SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=[)>]) |(?<=pair) ")  # or after (a), > or pair
 
 
 def use_style() -> None:
