@@ -6,13 +6,18 @@ w, the *passage width*.
 """
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy
 
-from lube.contact.surface_answers import AnsweredStrip, moments_in_gap, summit_moments
+from lube.contact.surface_answers import (
+    AnsweredStrip,
+    moments_in_gap,
+    summit_moments,
+    waves_in_gap,
+)
 from lube.grid.operating_points import surface_speeds
 from lube.physics import excursions, summits
 from lube.surfaces.lay import cosine_and_sine
@@ -27,6 +32,9 @@ COLUMNS = 200
 HIGHEST = 37.0
 """Lambda ratio under which contacts are looked for at most: under thicker films their number is 0
 in floating point, and so are numbers that they are divided by."""
+UNCHANGED = ((1.0, 0.0), (1.0, 0.0))
+"""Waves of both surfaces that the oil does not change, as from
+`lube.contact.surface_answers.waves_in_gap`."""
 
 
 @dataclass(frozen=True)
@@ -145,8 +153,7 @@ class StripFilm:
         Returns
         -------
         tuple of float
-            Of the roughness in the gap. Its curvatures are those of the surfaces as drawn: they
-            are of short waves, which the oil hardly changes.
+            Of the roughness in the gap.
         """
         number = self.contacts(spec, length).number
         return number, number * self.breaking_part(spec, length, sharp)
@@ -167,13 +174,16 @@ class StripFilm:
         """Films, moments and curvatures of summits at columns, and the columns' weights."""
         spacing = self.width / COLUMNS
         films, sharp = self.films(spacing), self.breaking_curvatures(spacing, sharp)
-        moments = surface_moments(spec)
+        moments, curvatures = surface_moments(spec), curvature_moments(spec)
         if self.answers:
-            both = self._of_each(summit_moments, spec, self._columns(spacing))
-            moments = excursions.SurfaceMoments(*sum(both), moments.curvature)
+            products = sum(self._of_each(summit_moments, spec, self._columns(spacing))).T
+            height, mean, half, mixed = products[0]
+            slopes = mean + half, mean - half, mixed
+            moments = excursions.SurfaceMoments(height, *slopes, 4.0 * products[1, 1])
+            curvatures = products[1:, 1:]
         elif self.has_edges:  # the same everywhere
             films, sharp, density = films[:1], sharp[:1], density[:1]
-        return (films, moments, sharp, curvature_moments(spec)), density
+        return (films, moments, sharp, curvatures), density
 
     def passage_width(
         self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0
@@ -193,9 +203,9 @@ class StripFilm:
     ) -> float:
         """Find how far the rollers move on average while the layer of a contact is broken, m.
 
-        With slip a layer also breaks where a summit becomes sharper while it touches, and holds
-        again where it becomes blunter. In pure rolling it is broken as long as the contact is in
-        the strip.
+        With slip, and where the oil answers the surfaces, a layer also breaks where a summit
+        becomes sharper while it touches, and holds again where it becomes blunter. Else it is
+        broken as long as the contact is in the strip.
 
         Parameters
         ----------
@@ -206,11 +216,15 @@ class StripFilm:
         """
         found = self.contacts(spec, length, slide_to_roll_ratio)
         passage = found.number / found.appearing
-        if slide_to_roll_ratio == 0.0:
+        if slide_to_roll_ratio == 0.0 and not self.answers:
             return passage
         known, weights = self._summits(spec, sharp, found.density)
         share = summits.sharp_surface_summit_share(*known)
-        more = summits.sharpening_summits(*known, summit_motion(spec, slide_to_roll_ratio))
+        answered = UNCHANGED
+        if self.answers:
+            answered = self._of_each(waves_in_gap, spec, self._columns(self.width / COLUMNS))
+        motion = summit_motion(spec, slide_to_roll_ratio, answered)
+        more = summits.sharpening_summits(*known, motion)
         share, more = (np.average(each, weights=weights) for each in (share, more))
         # Curvatures are integrated as far as 9 standard deviations: a smaller share tells nothing.
         return share / (share / passage + more) if share > 1e-30 else passage
@@ -327,7 +341,9 @@ def curvature_moments(spec: LineSpecLike) -> Array | None:
     return found
 
 
-def summit_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> summits.SummitMotion:
+def summit_motion(
+    spec: LineSpecLike, slide_to_roll_ratio: float, answered: Sequence[Pair] = UNCHANGED
+) -> summits.SummitMotion:
     """How the summits of both surfaces together change while they slide over one another.
 
     Parameters
@@ -336,30 +352,43 @@ def summit_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> summits.Sum
         As in `surface_moments`.
     slide_to_roll_ratio : float
         Slide-to-roll ratio.
+    answered : tuple of tuple of numpy.ndarray, optional
+        What becomes of either surface's waves, from `lube.contact.surface_answers.waves_in_gap`; by
+        default they stay as drawn.
 
     Returns
     -------
     SummitMotion
-        Of surfaces as drawn: curvatures are of short waves, which the oil hardly changes.
+        Of the surfaces in the gap.
     """
     waves = [surface_waves(spec, roller) for roller in range(len(spec.lines))]
-    speeds = np.array(surface_speeds(1.0, slide_to_roll_ratio))
+    each = zip(answered, waves, strict=True)
+    powers = [np.atleast_2d(_square(kept) * power) for (kept, _), (*_, power) in each]
+    slopes = [np.stack(own) for *own, _ in waves]
+    means = [0.5 * np.sum(own**2, axis=0) for own in slopes]
     # Seen in motion with the mean of both, their changes are independent of what they are.
-    curved = [np.sum(power * (along**2 + across**2) ** 2) for along, across, power in waves]
-    speeds -= np.average(speeds, weights=curved)
-    change, moving, standing = 0.0, np.zeros((2, 2)), np.zeros((3, 2, 2))
-    for speed, (along, across, power) in zip(speeds, waves, strict=True):
-        slopes, mean = np.stack([along, across]), 0.5 * (along**2 + across**2)
-        moved = power * (speed * along) ** 2
-        change += np.sum(moved * mean**2)
-        moving += np.einsum("iw,jw,w->ij", slopes, slopes, moved)
-        powers = np.stack([power, power * mean, power * mean**2])
-        standing += np.einsum("iw,jw,kw->kij", slopes, slopes, powers)
+    curved = [np.sum(power * mean**2, axis=1) for power, mean in zip(powers, means, strict=True)]
+    speeds = np.array(surface_speeds(1.0, slide_to_roll_ratio))
+    mean_speed = np.average(np.broadcast_to(speeds[:, None], np.shape(curved)), 0, curved)
+    change, moving, standing = 0.0, 0.0, 0.0
+    for roller, (speed, own, mean) in enumerate(zip(speeds, slopes, means, strict=True)):
+        kept, changing = answered[roller]
+        rate = 1j * (mean_speed - speed)[:, None] * own[0] * kept + mean_speed[:, None] * changing
+        moved = waves[roller][2] * _square(rate)
+        change = change + np.sum(moved * mean**2, axis=1)
+        moving = moving + np.einsum("iw,jw,cw->ijc", own, own, moved)
+        by_curvature = mean ** np.arange(3)[:, None]
+        power = powers[roller]
+        standing = standing + np.einsum("iw,jw,kw,cw->kijc", own, own, by_curvature, power)
     (first, second), mixed, gradients = standing
     inverse = np.array([[second[1], -first[1]], [-first[1], first[0]]])
     inverse /= first[0] * second[1] - first[1] ** 2
-    gradients -= np.einsum("ij,jk,km->im", mixed, inverse, mixed)
+    gradients = gradients - np.einsum("ijc,jkc,kmc->imc", mixed, inverse, mixed)
     return summits.SummitMotion(change, moving, gradients)
+
+
+def _square(complex_values):
+    return np.real(complex_values) ** 2 + np.imag(complex_values) ** 2
 
 
 @functools.lru_cache(maxsize=1)

@@ -1,6 +1,7 @@
 """What the oil adds to rough surfaces across a strip: the response of the film to their waves."""
 
 import copy
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Self
@@ -126,7 +127,7 @@ def moments_in_gap(waves: Sequence[Array], answer: SurfaceAnswer, position: Arra
 
 
 def summit_moments(waves: Sequence[Array], answer: SurfaceAnswer, position: Array) -> Array:
-    """Compute how heights of a surface in the gap go with its curvatures as drawn.
+    """Compute second moments of the heights of a surface in the gap, and of its curvatures.
 
     Parameters
     ----------
@@ -135,15 +136,42 @@ def summit_moments(waves: Sequence[Array], answer: SurfaceAnswer, position: Arra
 
     Returns
     -------
-    numpy.ndarray, shape (4, columns)
-        Mean square height, m^2, and the mean products of the height with the curvatures along
-        rolling and along the rollers and with the twist, positive at summits.
+    numpy.ndarray, shape (columns, 4, 4)
+        Mean squares and products of the height, m, of the mean of the curvatures along rolling and
+        along the rollers, of half their difference, and of the twist, 1/m, positive at summits.
     """
     along, across, power = waves
-    filters = answer.filters_at(along, across)
-    kept = 1.0 + np.einsum("cm,wm->cw", answer.at(position / answer.half_width), filters)
-    products = (kept.real * each for each in (along**2, across**2, along * across))
-    return np.stack([np.sum(each * power, axis=1) for each in (np.abs(kept) ** 2, *products)])
+    kept, slopes, bent = itertools.islice(_kept(waves, answer, position), 3)
+    first = along**2 * kept - 2j * along * slopes - bent
+    second, twist = across**2 * kept, across * (along * kept - 1j * slopes)
+    each = np.stack([kept, 0.5 * (first + second), 0.5 * (first - second), twist])
+    return np.einsum("icw,jcw,w->cij", each.conj(), each, power).real
+
+
+def waves_in_gap(waves: Sequence[Array], answer: SurfaceAnswer, position: Array) -> list[Array]:
+    """Compute what becomes of waves in the gap.
+
+    Parameters
+    ----------
+    waves, answer, position
+        As in `moments_in_gap`.
+
+    Returns
+    -------
+    list of numpy.ndarray of complex, shape (columns, waves)
+        Height of each wave over that as drawn, and its derivative along rolling, 1/m.
+    """
+    return list(itertools.islice(_kept(waves, answer, position), 2))
+
+
+def _kept(waves, answer, position):
+    """Yield how waves enter the gap at columns, and its derivatives along rolling."""
+    filters, shapes = answer.filters_at(*waves[:2]), answer.at(position / answer.half_width)
+    kept = 1.0 + np.einsum("cm,wm->cw", shapes, filters)
+    while True:
+        yield kept
+        shapes = np.gradient(shapes, position, axis=0)
+        kept = np.einsum("cm,wm->cw", shapes, filters)
 
 
 class AnsweredStrip:
@@ -168,14 +196,18 @@ class AnsweredStrip:
         Binary logarithm of the number of points of the surface from node to node.
     points : tuple of int
         Nodes along the sides of the surface.
+    apart : tuple of float
+        Distances of neighbouring nodes along the rollers and along rolling, m.
     """
 
     def __init__(self, answers: Pair, surface: Surface, columns: Array) -> None:
         self.answers = answers[:1] if answers[0] is answers[1] else answers
         self.shift = self.answers[0].shift(surface.spacing[1])
         self.points = tuple(number >> self.shift for number in surface.points)
+        self.apart = tuple(side * (1 << self.shift) for side in surface.spacing)
         self._surface, self._columns = surface, np.arange(columns.size)
-        self._nodes = np.arange(((columns.size - 1) >> self.shift) + 2) << self.shift
+        # One more on either side, from which curvatures follow.
+        self._nodes = np.arange(-1, ((columns.size - 1) >> self.shift) + 3) << self.shift
         position = columns[0] + self._nodes * surface.spacing[1]
         self._shapes = [one.at(position / one.half_width) for one in self.answers]
         # The waves that the oil changes: their places among those of the surface.
@@ -191,7 +223,7 @@ class AnsweredStrip:
         waves = units[1] * self._along, units[0] * self._down
         filters = [one.filters_at(*waves) for one in self.answers]
         self._filters = [each.astype(np.complex64) for each in filters]
-        self._first, self._covariances = 0, np.zeros((2, 0, 0, 0), np.float32)
+        self._first, self._covariances = 0, np.zeros((0, 0, 0), np.float32)
 
     def with_covariances(self, before: int, after: int, threads: int | None) -> "AnsweredStrip":
         """Return the strip with covariances, for points that are known to touch.
@@ -207,19 +239,18 @@ class AnsweredStrip:
         variances = surface.variances[place] / surface.rms**2
         first_part = surface.first_part[place]
         parts = [first_part, 1.0 - first_part] if len(self.answers) > 1 else [1.0]
-        rows = np.arange(-before >> self.shift, (after >> self.shift) + 2)
+        rows = np.arange((-before >> self.shift) - 1, (after >> self.shift) + 3)
         each = zip(parts, self._filters, self._shapes, strict=True)
         added = [self._added(rows, part * variances, *own, threads) for part, *own in each]
         found = copy.copy(self)
-        found._first, found._covariances = rows[0].item(), np.ascontiguousarray(sum(added))
-        own = np.diagonal(found._covariances[0, :, -rows[0]])
+        found._first, found._covariances = rows[1].item(), np.ascontiguousarray(sum(added))
+        own = np.diagonal(found._covariances[:, -rows[0]])
         found.rms = np.sqrt(1.0 + np.interp(self._columns, self._nodes, own))
         return found
 
     def _added(self, rows, variances, filters, shapes, threads):
-        """Sum what the oil adds to the covariances of one surface, with heights and curvatures."""
+        """Sum what the oil adds to the covariances of one surface's heights."""
         surface, shapes = self._surface, shapes.astype(np.float32)
-        curvatures = surface.curvatures[self._down, self._along]
         down_unit, unit = (2.0 * np.pi / number for number in surface.points)
         phases = unit * self._nodes[:, None] * np.arange(self._along.max() + 1)
         at_nodes = np.exp(1j * phases).astype(np.complex64)
@@ -229,16 +260,14 @@ class AnsweredStrip:
         # Waves up and down the rollers together: their sums, and differences unless they are alike.
         parts = [np.cos] if surface.is_mirrored else [np.cos, np.sin]
         sides = self._nodes.size, self._nodes.size
-        of_waves = np.empty((len(parts), downs.size, 2, *sides), np.float32)
+        of_waves = np.empty((len(parts), downs.size, *sides), np.float32)
 
         def fill(down):
             here = by_down[ends[down] : ends[down + 1]]
             drawn = at_nodes.take(self._along[here], axis=1)
-            by_oil = (shapes @ filters[here].T) * drawn
-            changed = drawn + by_oil
+            changed = drawn + (shapes @ filters[here].T) * drawn
             # Waves along rolling stand for their mirror images too.
             power = (variances[here] * np.where(self._along[here], 2.0, 1.0)).astype(np.float32)
-            curved = drawn * (power * curvatures[here].astype(np.float32))
             ahead = np.sign(self._down[here]).astype(np.complex64)
             for part, signs in enumerate([np.complex64(1.0), 1j * ahead][: len(parts)]):
                 as_drawn = drawn * (power * signs)
@@ -246,12 +275,12 @@ class AnsweredStrip:
                 heights = _products(changed, changed * (power * signs))
                 # As drawn, covariances are the same for all nodes equally far apart.
                 heights -= scipy.linalg.toeplitz(*map(np.ravel, stays))
-                of_waves[part, down] = heights, _products(by_oil, curved * signs)
+                of_waves[part, down] = heights
 
         on_threads(fill, downs, threads)
         lags = rows[:, None] << self.shift
         along = np.stack([one(down_unit * lags * downs) for one in parts]).astype(np.float32)
-        return np.einsum("prd,pdktc->ktrc", along, of_waves, optimize=True)
+        return np.einsum("prd,pdtc->trc", along, of_waves, optimize=True)
 
     def of_waves(self, waves: list[Array]) -> Answered:
         """Filter the waves of drawn surfaces, on the coarser grid of the nodes.
@@ -273,11 +302,29 @@ class AnsweredStrip:
             for each in filters.T:
                 changed[self._down, self._along] = own[self._down, self._along] * each
                 rough = scipy.fft.irfft2(changed, self.points, norm="forward")
-                fields.append(np.pad(rough, (0, 1), mode="wrap"))
+                fields.append(np.pad(rough, (1, 2), mode="wrap"))
         shapes = np.hstack(self._shapes).astype(np.float32)
         # For another layout in memory Numba would compile the kernels once more.
         stacked = np.ascontiguousarray(np.stack(fields, axis=-1))
-        return Answered(stacked, shapes, self._covariances, self._first, self.shift)
+        return Answered(stacked, shapes, self._covariances, self._first, self.shift, self.apart)
+
+    def curvatures(self, heights: Array) -> Array:
+        """Mean curvature of heights at nodes, positive at summits.
+
+        Parameters
+        ----------
+        heights : numpy.ndarray, shape (rows, nodes, ...)
+            Heights.
+
+        Returns
+        -------
+        numpy.ndarray, shape (rows - 2, nodes - 2, ...)
+            Height over square metres, at all nodes but the outermost.
+        """
+        here = 2.0 * heights[1:-1, 1:-1]
+        down = here - heights[:-2, 1:-1] - heights[2:, 1:-1]
+        along = here - heights[1:-1, :-2] - heights[1:-1, 2:]
+        return 0.5 * (down / self.apart[0] ** 2 + along / self.apart[1] ** 2)
 
 
 def _products(some, others):

@@ -113,21 +113,26 @@ class _Passage:
     def add(self, summits, waves, contact):
         """Add the contacts of a piece."""
         summits = _selected(summits, np.flatnonzero(summits.height > self.lowest_drawn))
-        by_oil, shapes = (np.zeros((size, 0)) for size in (summits.row.size, self._film.size))
+        by_oil, shapes = np.zeros((2, summits.row.size, 0)), np.zeros((self._film.size, 0))
         if self._answer:
             oil = self._answer.of_waves([waves])
             places = np.stack([summits.row, summits.column]) / (1 << oil.shift)
-            fields, linear = np.moveaxis(oil.fields, -1, 0), {"order": 1, "mode": "nearest"}
-            by_oil = [scipy.ndimage.map_coordinates(one, places, **linear) for one in fields]
-            by_oil = np.stack(by_oil, axis=1)
-            most = np.einsum("sm,nm->sn", by_oil, oil.shapes).max(axis=1, initial=-np.inf)
+            both = oil.fields[1:-1, 1:-1], self._answer.curvatures(oil.fields)
+            by_oil = np.stack([_interpolated(fields, places) for fields in both])
+            most = np.einsum("sm,nm->sn", by_oil[0], oil.shapes).max(axis=1, initial=-np.inf)
             some = np.flatnonzero(summits.height + most > self._lowest)
-            summits, by_oil = _selected(summits, some), by_oil[some]
-            columns = np.arange(self._film.size) / (1 << oil.shift)
-            nodes = np.arange(oil.shapes.shape[0])
-            shapes = np.stack([np.interp(columns, nodes, one) for one in oil.shapes.T], axis=1)
+            summits, by_oil = _selected(summits, some), by_oil[:, some]
+            nodes = 1.0 + np.arange(self._film.size) / (1 << oil.shift)
+            shapes = _interpolated(oil.shapes, nodes[None])
         strip = self._film, self._sharp, shapes, self._has_edges
         passing_contacts(summits, by_oil, *strip, self.first_step, contact)
+
+
+def _interpolated(values, places):
+    """Linear interpolation between nodes, over all axes but the last."""
+    linear = {"order": 1, "mode": "nearest"}
+    each = np.moveaxis(values, -1, 0)
+    return np.stack([scipy.ndimage.map_coordinates(one, places, **linear) for one in each], axis=-1)
 
 
 def _selected(summits, some):

@@ -101,22 +101,25 @@ def _moving(surface, generator, speeds):
 
 def _followed(surface, moving, films, sharp, answer, rows, way):
     """Contacts of a piece at every step: their row, diameter, and whether they break."""
-    added = _added(surface, moving, answer)
+    added = _added(moving, answer)
     shift = answer.shift if answer else 0
     columns, steps = np.arange(films.size), []
     near = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
     if surface.diagonal:
         near[0, 1 - surface.diagonal] = near[2, 1 + surface.diagonal] = 1
     for here in way:
-        overlap, curvature = np.float32(0.0) - films, []
+        overlap, curvature, by_oil = np.float32(0.0) - films, [], 0.0
         for (speed, heights, curvatures, _), more in zip(moving, added, strict=True):
             # Points of the surface that lie upstream come into the strip.
             place = round(-here * speed / surface.spacing[1]) >> shift << shift
             at = (place + columns) % surface.points[1]
             overlap = overlap + heights[:rows].take(at, axis=1)
             curvature.append((curvatures, at))
-            if more is not None:
-                overlap += more(place)[:rows, : films.size]
+            if answer:
+                by_oil = by_oil + more(place >> shift)
+        if answer:
+            inner = _finer(by_oil[1:-1, 1:-1], shift)
+            overlap += _finer(inner.T, shift).T[:rows, : films.size]
         # Rows with a contact, each with the next row, so that others stay apart.
         touched = (overlap > 0.0).any(axis=1)
         touched[1:] |= touched[:-1]
@@ -130,25 +133,26 @@ def _followed(surface, moving, films, sharp, answer, rows, way):
         row = some[row]
         area = surface.spacing[0] * surface.spacing[1] * np.bincount(labels.ravel())[1:]
         curved = sum(curvatures[row, at[column]] for curvatures, at in curvature)
+        if answer:
+            nodes = np.stack([row, column]) / (1 << shift)
+            from_oil = answer.curvatures(by_oil)
+            curved = curved + scipy.ndimage.map_coordinates(from_oil, nodes, order=1)
         steps.append(np.column_stack([row, np.sqrt(4.0 * area / np.pi), curved > sharp[column]]))
     return steps
 
 
-def _added(surface, moving, answer):
-    """Functions of the place of a strip for what the oil adds to each moving surface, or None."""
+def _added(moving, answer):
+    """Functions of the place of a strip for what the oil adds to each moving surface at nodes."""
     if answer is None:
         return [None] * len(moving)
     # In pure rolling the film responds to both surfaces alike, and their sum has one answer.
     by_oil = answer.of_waves([own for *_, own in moving])
-    fields, shapes, ends = by_oil.fields[:-1, :-1], by_oil.shapes, [0]
-    ends += np.cumsum([one.shapes.shape[1] for one in answer.answers]).tolist()
+    ends = np.cumsum([0, *(one.shapes.shape[1] for one in answer.answers)]).tolist()
+    number = np.arange(by_oil.shapes.shape[0])
 
-    def added(begin, end, place):
-        nodes = (place >> answer.shift) + np.arange(shapes.shape[0])
-        part = fields[:, nodes % fields.shape[1], begin:end] * shapes[:, begin:end]
-        rough = np.sum(part, axis=-1)
-        rough = _finer(np.vstack([rough, rough[:1]]), answer.shift)
-        return _finer(rough.T, answer.shift).T
+    def added(begin, end, first):
+        nodes = (first - 1 + number) % answer.points[1] + 1
+        return np.sum(by_oil.fields[:, nodes, begin:end] * by_oil.shapes[:, begin:end], axis=-1)
 
     return [partial(added, *each) for each in itertools.pairwise(ends)]
 

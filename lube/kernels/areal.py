@@ -17,11 +17,12 @@ from lube.kernels.moved_surface import (
     Oil,
     Rows,
     along,
-    at_point,
     column_of_covariances,
+    curvature_at,
     fill_by_known,
     fill_nodes,
     fill_row,
+    height_at,
     most_added,
     node_before,
 )
@@ -65,11 +66,10 @@ def touching_strips(
 
     .. math:: z = z' + \rho \, (z_\tau - z'_\tau) ,
 
-    and its curvature with it. The curvature is that of the surface as drawn: the oil hardly changes
-    the short waves, which make summits sharp. The boundary layer of a contact breaks if the
-    surface is sharp enough where it is highest above the film. A point that overlaps by e is chosen
-    with a probability in proportion to :math:`e^{-f e}`, where f is `fading`. A row could have been
-    chosen by any of its touching points, so it counts :math:`1 / \sum e^{-f e}` over them.
+    and its curvature with it. The boundary layer of a contact breaks if the surface is sharp enough
+    where it is highest above the film. A point that overlaps by e is chosen with a probability in
+    proportion to :math:`e^{-f e}`, where f is `fading`. A row could have been chosen by any of its
+    touching points, so it counts :math:`1 / \sum e^{-f e}` over them.
 
     Parameters
     ----------
@@ -133,10 +133,10 @@ def touching_strips(
         known[3, row] = known[1, max(row - GROUP + 1, 0) : row + 1].max()
     least = np.empty((width - 2) // BLOCK + 2, np.float32)
     known_row = np.int64(0)  # for the literal 0, Numba would compile `_row` and `_contact` again
-    one, unmoved, strip_nodes = np.float32(1.0), np.float32(0.0), answered.shapes.shape[0]
-    by_known = np.empty((2, answered.covariances.shape[2], strip_nodes), np.float32)
-    nodes = np.empty(strip_nodes, np.float32)
-    highest = np.empty(by_known.shape[1], np.float32)  # what the oil adds at most, rows of nodes
+    one, unmoved = np.float32(1.0), np.float32(0.0)
+    by_known = np.empty(answered.covariances.shape[1:], np.float32)
+    nodes = np.empty(answered.shapes.shape[0], np.float32)
+    highest = np.empty(by_known.shape[0], np.float32)  # what the oil adds at most, rows of nodes
     for k in range(places[0].size):
         origin = touching[0][k]
         node, part = node_before(origin, answered.shift)
@@ -145,8 +145,8 @@ def touching_strips(
         oil, own_rows = Oil(answered, by_known, nodes, highest), Rows(heights, filled, k)
         place = reach, places[0][k], places[1][k], origin
         drawn = MovedSurface(fields, covariances, *place, unmoved, oil, own_rows)
-        variance = one + along(by_known[0, -answered.first], origin, answered.shift)
-        rise = (touching[1][k] - at_point(0, drawn, known_row, origin)) / variance
+        variance = one + along(by_known[1 - answered.first], origin, answered.shift)
+        rise = (touching[1][k] - height_at(drawn, known_row, origin)) / variance
         moved = MovedSurface(fields, covariances, *place, rise, oil, own_rows)
         own, others_too = np.int32(2 * k + 1), np.int32(2 * k + 2)
         search = _Search(film, sharp, fading, seen, own, stack, diagonal)
@@ -225,9 +225,8 @@ def contacts_per_row(
     heights, filled = np.empty(seen.shape, np.float32), np.full(seen.shape[0], -1)
     counts = np.zeros(4)
     origin, unmoved, first = np.int64(0), np.float32(0.0), np.int64(-reach)
-    strip_nodes = answered.shapes.shape[0]
-    by_known = np.zeros((2, answered.covariances.shape[2], strip_nodes), np.float32)
-    nodes, fading = np.empty(strip_nodes, np.float32), np.zeros(film.size)
+    by_known = np.zeros(answered.covariances.shape[1:], np.float32)
+    nodes, fading = np.empty(answered.shapes.shape[0], np.float32), np.zeros(film.size)
     oil = Oil(answered, by_known, nodes, np.empty(0, np.float32))
     for k in range(places[0].size):
         place = reach, places[0][k], places[1][k], origin
@@ -369,5 +368,5 @@ def _contact(moved, search, row, column):
                 chosen += np.exp(-fading[next_column] * overlap)
                 if overlap > highest:
                     highest, summit_row, summit_column = overlap, next_row, next_column
-    breaks = at_point(1, moved, summit_row, summit_column) > search.sharp[summit_column]
+    breaks = curvature_at(moved, summit_row, summit_column) > search.sharp[summit_column]
     return chosen, points, breaks, earliest

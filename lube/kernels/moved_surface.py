@@ -5,6 +5,7 @@ computed when they are needed.
 
 The oil may answer the surface: its pressure flattens the waves in the contact. What it adds to the
 heights is smooth, so it is computed at some points, the nodes, and taken as linear between them.
+What it adds to curvatures follows from the heights as far away as the next nodes.
 """
 
 from typing import NamedTuple
@@ -21,19 +22,21 @@ class Answered(NamedTuple):
     Attributes
     ----------
     fields : numpy.ndarray
-        M filtered surfaces at every 2^`shift`-th point, the first row and column repeated at the
-        end, shape (nodes, nodes, M), float32 height steps.
+        M filtered surfaces at every 2^`shift`-th point, periodic, with one more node before the
+        first and two after the last, shape (nodes, nodes, M), float32 height steps.
     shapes : numpy.ndarray
         Functions of the position across the strip that multiply the filtered surfaces, at the n
-        nodes of the strip, shape (n, M), float32.
+        nodes of the strip, of which one lies before its first point, shape (n, M), float32.
     covariances : numpy.ndarray
-        Shape (2, n, R', n), float32: what the oil adds to the covariance of the height at a node
-        of the strip with heights, and with curvatures as drawn, in R' rows of nodes around it and
-        at each node across the strip; over the variance of the heights as drawn.
+        Shape (n, R', n), float32: what the oil adds to the covariance of the height at a node
+        of the strip with heights in R' rows of nodes around it and at each node across the strip;
+        over the variance of the heights as drawn.
     first : int
-        Row of the first of these rows of nodes, counted from that of the height.
+        Row of the second of these rows of nodes, counted from that of the height.
     shift : int
         Binary logarithm of the number of points from node to node.
+    apart : tuple of float
+        Distances of neighbouring nodes along the rollers and along rolling, m.
     """
 
     fields: Array
@@ -41,17 +44,18 @@ class Answered(NamedTuple):
     covariances: Array
     first: int
     shift: int
+    apart: tuple[float, float]
 
 
 _NOTHING = np.zeros((2, 2, 0), np.float32)
-NO_ANSWER = Answered(_NOTHING, _NOTHING[0, :0], np.zeros((2, 2, 2, 0), np.float32), 0, 30)
+NO_ANSWER = Answered(_NOTHING, _NOTHING[0, :0], _NOTHING, 0, 30, (1.0, 1.0))
 """The oil does not change the surface."""
 
 
 class Oil(NamedTuple):
     """What the oil adds to a strip: `Answered`, and what is computed of it for this strip.
 
-    The covariances with the known point, shape (2, R', n); room for a row of nodes; and the most
+    The covariances with the known point, shape (R', n); room for a row of nodes; and the most
     that the oil adds in each row of nodes, NaN before it is known.
     """
 
@@ -94,12 +98,11 @@ class MovedSurface(NamedTuple):
 def fill_by_known(by_known, answered, node, part):
     """Fill in what the oil adds to the covariances with the known point, between two nodes."""
     # Numba takes seconds to compile the same with whole arrays, whose shapes it compares.
-    for surface in range(2):
-        for lag in range(by_known.shape[1]):
-            for at in range(by_known.shape[2]):
-                here = answered.covariances[surface, node, lag, at]
-                there = answered.covariances[surface, node + 1, lag, at]
-                by_known[surface, lag, at] = here + part * (there - here)
+    for lag in range(by_known.shape[0]):
+        for at in range(by_known.shape[1]):
+            here = answered.covariances[node, lag, at]
+            there = answered.covariances[node + 1, lag, at]
+            by_known[lag, at] = here + part * (there - here)
 
 
 @kernel
@@ -132,33 +135,57 @@ def column_of_covariances(moved):
 
 
 @inlined
-def at_point(surface, moved, row, column):
-    """Height (0) or curvature (1) at a point of the strip, rows counted from the known one."""
-    known = moved.covariances[surface][moved.reach + row, column_of_covariances(moved) + column]
-    drawn = moved.fields[surface][moved.first_row + row, moved.first_column + column]
-    found = drawn + known * moved.rise
+def height_at(moved, row, column):
+    """Height at a point of the strip, rows counted from the known one."""
+    found = _drawn_at(0, moved, row, column)
     if moved.oil.nodes.size > 0:
-        node, part = node_before(column, moved.oil.answered.shift)
-        left = _at_node(surface, moved, row, node)
-        found += left + part * (_at_node(surface, moved, row, node + 1) - left)
+        found += _added_at(moved, row, column)
     return found
 
 
+@inlined
+def curvature_at(moved, row, column):
+    """Mean curvature at a point of the strip, rows counted from the known one."""
+    found = _drawn_at(1, moved, row, column)
+    if moved.oil.nodes.size > 0:
+        answered = moved.oil.answered
+        far, here = 1 << answered.shift, 2.0 * _added_at(moved, row, column)
+        down = _added_at(moved, row - far, column) + _added_at(moved, row + far, column)
+        along = _added_at(moved, row, column - far) + _added_at(moved, row, column + far)
+        found += 0.5 * (here - down) / answered.apart[0] ** 2
+        found += 0.5 * (here - along) / answered.apart[1] ** 2
+    return found
+
+
+@inlined
+def _drawn_at(surface, moved, row, column):
+    """Height (0) or curvature (1) of the surface as drawn and moved."""
+    known = moved.covariances[surface][moved.reach + row, column_of_covariances(moved) + column]
+    drawn = moved.fields[surface][moved.first_row + row, moved.first_column + column]
+    return drawn + known * moved.rise
+
+
 @kernel
-def _at_node(surface, moved, row, node):
-    """Find what the oil adds to `at_point` at a node of the strip."""
+def _added_at(moved, row, column):
+    """Height that the oil adds at a point."""
+    node, part = node_before(column, moved.oil.answered.shift)
+    left = _added_at_node(moved, row, node)
+    return left + part * (_added_at_node(moved, row, node + 1) - left)
+
+
+@kernel
+def _added_at_node(moved, row, node):
+    """Height that the oil adds at a node of the strip, in any row."""
     answered, by_known = moved.oil.answered, moved.oil.by_known
     fields, shapes, shift = answered.fields, answered.shapes, answered.shift
-    added = np.float32(0.0)
-    if surface == 0:
-        column = (moved.first_column >> shift) + node
-        upper, part = node_before(moved.first_row + row, shift)
-        for m in range(shapes.shape[1]):
-            here = fields[upper, column, m]
-            added += shapes[node, m] * (here + part * (fields[upper + 1, column, m] - here))
+    added, column = np.float32(0.0), (moved.first_column >> shift) + node
+    upper, part = node_before(moved.first_row + row, shift)
+    for m in range(shapes.shape[1]):
+        here = fields[upper, column, m]
+        added += shapes[node, m] * (here + part * (fields[upper + 1, column, m] - here))
     lag, part = node_before(row - (answered.first << shift), shift)
-    here = by_known[surface, lag, node]
-    return added + moved.rise * (here + part * (by_known[surface, lag + 1, node] - here))
+    here = by_known[lag, node]
+    return added + moved.rise * (here + part * (by_known[lag + 1, node] - here))
 
 
 @kernel
@@ -166,7 +193,7 @@ def fill_nodes(moved, row):
     """Fill in what the oil adds to a row at the nodes."""
     nodes = moved.oil.nodes
     for node in range(nodes.size):
-        nodes[node] = _at_node(0, moved, row, node)
+        nodes[node] = _added_at_node(moved, row, node)
 
 
 @kernel
@@ -190,6 +217,6 @@ def along(nodes, column, shift):
 
 @inlined
 def node_before(point, shift):
-    """Node before a point, and the part of the distance to the next node."""
+    """Node before a point, and the part of the way to the next; node 0 lies before point 0."""
     node = point >> shift
-    return node, np.float32(point - (node << shift)) / np.float32(1 << shift)
+    return node + 1, np.float32(point - (node << shift)) / np.float32(1 << shift)

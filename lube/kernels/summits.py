@@ -175,7 +175,8 @@ def passing_contacts(
     summits : Summits
         In the order of their columns.
     added : numpy.ndarray
-        What the oil adds to each summit, as factors of `shapes`, shape (S, M).
+        What the oil adds to each summit's height and curvature, as factors of `shapes`, shape
+        (2, S, M).
     film, sharp : numpy.ndarray
         Shape (W,) each, as in `lube.kernels.areal.touching_strips`.
     shapes : numpy.ndarray
@@ -212,23 +213,26 @@ def passing_contacts(
                 top = number
                 while areas[summits.higher[top]] > 0.0 and top != summits.higher[top]:
                     column = columns[top]
-                    if summits.saddle[top] + _by_oil(added, shapes, top, column) <= film[column]:
+                    if summits.saddle[top] + _by_oil(added[0], shapes, top, column) <= film[column]:
                         break
                     top = summits.higher[top]
                 sums[top] += areas[number]
         for number in range(begin, end):
-            if sums[number] > 0.0 and summits.curvature[number] > sharp[columns[number]]:
-                contact[step] += math.sqrt(4.0 / math.pi * sums[number])
+            if sums[number] > 0.0:
+                column = columns[number]
+                curved = summits.curvature[number] + _by_oil(added[1], shapes, number, column)
+                if curved > sharp[column]:
+                    contact[step] += math.sqrt(4.0 / math.pi * sums[number])
             areas[number] = sums[number] = 0.0
 
 
 @inlined
 def _by_oil(added, shapes, number, column):
-    """Height that the oil adds to a summit in a column of the strip."""
-    height = 0.0
+    """Height, or curvature, that the oil adds to a summit in a column of the strip."""
+    total = 0.0
     for m in range(shapes.shape[1]):
-        height += added[number, m] * shapes[column, m]
-    return height
+        total += added[number, m] * shapes[column, m]
+    return total
 
 
 @kernel
@@ -236,7 +240,7 @@ def _touching(summits, added, strip, moved, number, column):
     """Area of a summit in contact, as far as it lies in the strip."""
     film, shapes, has_edges = strip
     here, width = summits.column[number] + moved, film.size
-    overlap = summits.height[number] - film[column] + _by_oil(added, shapes, number, column)
+    overlap = summits.height[number] - film[column] + _by_oil(added[0], shapes, number, column)
     inside = min(here + 0.5, width - 0.5 - here)
     if overlap <= 0.0 or (inside <= 0.0 and not has_edges):
         return 0.0

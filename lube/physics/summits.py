@@ -33,16 +33,16 @@ class SummitMotion(NamedTuple):
 
     Attributes
     ----------
-    change : float
+    change : numpy.ndarray, shape (levels,) or (1,)
         Mean square change of the mean curvature at a fixed place, 1/m^4.
-    slopes : numpy.ndarray, shape (2, 2)
+    slopes : numpy.ndarray, shape (2, 2, levels) or (2, 2, 1)
         Mean products of the changes of the slopes along rolling and along the rollers, 1/m^2.
-    gradients : numpy.ndarray, shape (2, 2)
+    gradients : numpy.ndarray, of the same shape
         Mean products of the changes of the mean curvature along rolling and along the rollers, at
         places without slope, 1/m^4.
     """
 
-    change: float
+    change: Array
     slopes: Array
     gradients: Array
 
@@ -137,11 +137,10 @@ def sharp_surface_summit_share(
     level : numpy.ndarray
         Levels, m, shape (levels,).
     moments : SurfaceMoments
-        As in `lube.physics.excursions.expected_contacts`; those of heights and slopes for all
-        levels or for each.
+        As in `lube.physics.excursions.expected_contacts`, for all levels or for each.
     curvature : float or numpy.ndarray
         Mean curvature, 1/m, for all levels or for each.
-    curvatures : numpy.ndarray, shape (3, 3), optional
+    curvatures : numpy.ndarray, shape (3, 3) or (3, 3, levels), optional
         Mean squares and products of :math:`\kappa`, d and t, 1/m^2; by default those of an
         isotropic surface.
 
@@ -210,7 +209,7 @@ def sharpening_summits(
     Surfaces that do not slide over one another keep their summits:
 
     >>> moments = SurfaceMoments(1.0, along=2.0, across=2.0, mixed=0.0, curvature=100.0)
-    >>> motion = SummitMotion(0.0, np.zeros((2, 2)), 300.0 * np.eye(2))
+    >>> motion = SummitMotion(np.zeros(1), np.zeros((2, 2, 1)), 300.0 * np.eye(2)[..., None])
     >>> sharpening_summits(np.array([5.0]), moments, 10.0, None, motion)
     array([0.])
     """
@@ -223,9 +222,10 @@ def sharpening_summits(
         determinant = _determinant(kappa, difference, twist)
         # The inverse of H times its determinant; both signs are alike.
         rows = (kappa - difference, -twist), (-twist, kappa + difference)
-        square = change * determinant**2
+        square = _apart(change, 2) * determinant**2
         for i, j, k, m in itertools.product(range(2), repeat=4):
-            square = square + rows[i][j] * slopes[j, k] * rows[k][m] * gradients[m, i]
+            both = _apart(slopes[j, k] * gradients[m, i], 2)
+            square = square + rows[i][j] * rows[k][m] * both
         return np.where(determinant > 0.0, np.sqrt(np.maximum(square, 0.0)), 0.0)
 
     summits = _summits(level, moments, _weight(moments, curvatures, speed), _FEW)
@@ -256,10 +256,11 @@ def _weight(moments, curvatures, of_curvatures):
     # follow both, and with what is left of their mean squares and product.
     by_height = np.array(np.broadcast_arrays(slopes, 0.5 * (along - across), mixed))
     by_height = by_height.reshape(3, -1, 1, 1)
-    left = curvatures[..., None, None, None] - by_height[:, None] * by_height / _apart(height, 2)
+    left = np.reshape(curvatures, (3, 3, -1, 1, 1))
+    left = left - by_height[:, None] * by_height / _apart(height, 2)
     by_curvature = left[1:, 0] / left[0, 0]
     left = left[1:, 1:] - left[0, 0] * by_curvature[:, None] * by_curvature
-    least = 1e-12 * spread  # long ridges have no curvature along them
+    least = 1e-12 * _apart(spread, 2)  # long ridges have no curvature along them
     first = np.sqrt(np.maximum(left[0, 0], least))
     shared = left[0, 1] / first
     second = np.sqrt(np.maximum(left[1, 1] - shared**2, least))

@@ -10,8 +10,8 @@ from lube.kernels.moved_surface import NO_ANSWER, Answered
 
 REACH, AROUND, WIDTH = 60, 20, 24
 ACROSS = np.linspace(-1.0, 1.0, WIDTH)
-SHIFT, NODES = 2, (WIDTH - 1 >> 2) + 2
-FIRST = -REACH >> SHIFT
+SHIFT, NODES = 2, (WIDTH - 1 >> 2) + 4
+FIRST, APART = -REACH >> SHIFT, (3.0, 4.0)
 
 
 def smooth_surface(rng, size):
@@ -29,34 +29,44 @@ def bump(width):
 def random_answer(rng, size):
     """Two smooth surfaces that the oil adds, and smooth covariances of what it adds."""
     fields = rng.standard_normal((2, size >> SHIFT, size >> SHIFT))
-    fields = np.pad(scipy.ndimage.gaussian_filter(fields, (0, 1, 1)), ((0, 0), (0, 1), (0, 1)))
+    fields = np.pad(scipy.ndimage.gaussian_filter(fields, (0, 1, 1)), ((0, 0), (1, 2), (1, 2)))
     shapes = np.linspace([0.5, -1.0], [2.0, 1.0], NODES)
     node = np.arange(NODES)
     across = (node[:, None] - node)[:, None]
-    rows = np.arange(FIRST, (AROUND >> SHIFT) + 2)[:, None]
+    rows = np.arange(FIRST - 1, (AROUND >> SHIFT) + 3)[:, None]
     distance = across**2 + rows**2 + rows * across
     covariances = (0.1 * node[:, None, None] - 0.3) * np.exp(-0.1 * distance)
-    covariances = np.stack([covariances, 0.4 * covariances[::-1]])
     values = np.moveaxis(fields, 0, -1), shapes, covariances
-    return Answered(*(each.astype(np.float32, order="C") for each in values), FIRST, SHIFT)
+    values = (each.astype(np.float32, order="C") for each in values)
+    return Answered(*values, FIRST, SHIFT, APART)
 
 
 def interpolated(values, *places):
     """Linear interpolation between nodes, over the last axes of some values."""
-    nodes = [np.arange(size) << SHIFT for size in values.shape]
+    nodes = [np.arange(-1, size - 1) << SHIFT for size in values.shape]
     return RegularGridInterpolator(nodes, values)(tuple(np.meshgrid(*places, indexing="ij")))
 
 
 def added(answered, row, column, origin):
-    """What the oil adds to the heights of a strip, and to the covariance with its known point."""
+    """What the oil adds to the heights of a strip, and to the covariance with its known point.
+
+    Each with what it adds to curvatures.
+    """
     if answered is NO_ANSWER:
-        return 0.0, (0.0, 0.0)
-    rows, columns = np.arange(-REACH, AROUND + 1), np.arange(WIDTH)
-    first = column >> SHIFT
+        return (0.0, 0.0), (0.0, 0.0)
+    first, far = column >> SHIFT, 1 << SHIFT
     part = answered.fields[:, first : first + NODES]
-    heights = interpolated(np.sum(part * answered.shapes, axis=-1), row + rows, columns)
-    lags = np.array([origin]), rows - (FIRST << SHIFT), columns
-    return heights, [interpolated(each, *lags)[0] for each in answered.covariances]
+    fields, lags = np.sum(part * answered.shapes, axis=-1), np.array([origin])
+
+    def at(down, along):
+        rows, columns = np.arange(-REACH, AROUND + 1) + down, np.arange(WIDTH) + along
+        known = interpolated(answered.covariances, lags, rows - (FIRST << SHIFT), columns)
+        return np.stack([interpolated(fields, row + rows, columns), known[0]])
+
+    here = at(0, 0)
+    curved = (2.0 * here - at(-far, 0) - at(far, 0)) / APART[0] ** 2
+    curved += (2.0 * here - at(0, -far) - at(0, far)) / APART[1] ** 2
+    return zip(here, 0.5 * curved, strict=True)
 
 
 def neighbours(diagonal):
@@ -75,13 +85,14 @@ def naive(
     columns = np.arange(WIDTH)
     part = np.ix_(row + rows, column + columns)
     lags = covariances[0].shape[1] // 2 + columns - origin
-    by_oil, known_by_oil = added(answered, row, column, origin)
+    (by_oil, curved_by_oil), known_by_oil = added(answered, row, column, origin)
     known, known_curvature = (
         drawn[:, lags] + by_oil for drawn, by_oil in zip(covariances, known_by_oil, strict=True)
     )
     heights = fields[0][part] + by_oil
     rise = (height - heights[REACH, origin]) / known[REACH, origin]
-    heights, curvatures = heights + known * rise, fields[1][part] + known_curvature * rise
+    curvatures = fields[1][part] + curved_by_oil + known_curvature * rise
+    heights = heights + known * rise
     labels, count = scipy.ndimage.label(heights > film, neighbours(diagonal))
     breaks = {0: False}
     for number in range(1, count + 1):
@@ -151,11 +162,12 @@ def test_the_one_row_that_touches_before_a_contact_is_found_wherever_it_is(by):
         elif by == "known":
             known[REACH - distance] = 1.5
         else:
-            added = np.zeros((51, 51, 1), np.float32)
-            added[row - distance >> SHIFT, (column >> SHIFT) + 3] = 50.0
+            added = np.zeros((53, 53, 1), np.float32)
+            added[(row - distance >> SHIFT) + 1, (column >> SHIFT) + 4] = 50.0
             heights[row - distance >> SHIFT << SHIFT : row] = -60.0
-            nodes = np.zeros((2, NODES, (AROUND >> SHIFT) + 2 - FIRST, NODES), np.float32)
-            answered = Answered(added, np.ones((NODES, 1), np.float32), nodes, FIRST, SHIFT)
+            nodes = np.zeros((NODES, (AROUND >> SHIFT) + 4 - FIRST, NODES), np.float32)
+            shapes = np.ones((NODES, 1), np.float32)
+            answered = Answered(added, shapes, nodes, FIRST, SHIFT, APART)
         fields, place = (heights, 0.0 * heights), (row, column)
         strip = film, sharp, fading, answered, 0
         expected = naive(fields, (known, known), *place, 9, np.float32(1.5), *strip)
@@ -183,11 +195,12 @@ def test_contacts_are_counted_in_the_row_in_which_they_begin(shape, diagonal, is
     expected = np.zeros(4)
     for row, column in zip(*places, strict=True):
         part = np.s_[row - REACH : row + AROUND + 1, column : column + WIDTH]
-        overlap = fields[0][part] + added(answered, row, column, 0)[0] - film
+        (by_oil, curved), _ = added(answered, row, column, 0)
+        overlap, curvatures = fields[0][part] + by_oil - film, fields[1][part] + curved
         labels, count = scipy.ndimage.label(overlap > 0.0, neighbours(diagonal))
         begun = [number for number in range(1, count + 1) if not (labels[0] == number).any()]
         summits = scipy.ndimage.maximum_position(overlap, labels, begun)
-        breaks = [fields[1][part][summit] > sharp[summit[1]] for summit in summits]
+        breaks = [curvatures[summit] > sharp[summit[1]] for summit in summits]
         points = np.bincount(labels.ravel())[begun]
         expected += len(begun), sum(breaks), points.sum(), points[breaks].sum()
     covariances = (np.zeros((REACH + 1 + AROUND, 2 * WIDTH - 1), np.float32),) * 2

@@ -93,7 +93,7 @@ def summits(columns, heights, curvatures=None, saddles=None, higher=None):
 def passed(some, film, sharp=0.0, has_edges=False, added=None, shapes=None, steps=60):
     film, count = np.array(film, float), some.row.size
     contact = np.zeros(steps)
-    added = np.zeros((count, 0)) if added is None else np.array(added, float)
+    added = np.zeros((2, count, 0)) if added is None else np.array(added, float)
     shapes = np.zeros((film.size, 0)) if shapes is None else np.array(shapes, float)
     sharp = np.broadcast_to(float(sharp), film.shape).copy()
     passing_contacts(some, added, film, sharp, shapes, has_edges, -40, contact)
@@ -139,7 +139,7 @@ def test_summits_of_one_contact_add_up_and_the_highest_decides():
 
 
 def test_what_the_oil_adds_raises_summits_and_saddles_alike():
-    shapes, added = np.linspace(-1.0, 1.0, 5)[:, None], [[2.0], [2.0]]
+    shapes, added = np.linspace(-1.0, 1.0, 5)[:, None], [[[2.0], [2.0]], [[0.0], [0.0]]]
     pair = summits([20.0, 20.0], [5.0, 6.0], None, [4.5, -np.inf], [1, 1])
     moved = passed(pair, np.full(5, 5.0), added=added, shapes=shapes)
     for column in range(5):
@@ -148,3 +148,11 @@ def test_what_the_oil_adds_raises_summits_and_saddles_alike():
             [5.0 - 2.0 * shapes[column, 0]],
         )
         assert moved[20 + column] == pytest.approx(by_hand[40])
+
+
+def test_a_layer_breaks_where_a_summit_is_sharp_enough_with_what_the_oil_adds():
+    shapes, added = np.array([[-1.0], [0.0], [1.0]]), [[[0.0]], [[0.4]]]
+    some = summits([20.0], [6.0], curvatures=[1.0])
+    for sharp, columns in ((0.5, 3), (0.8, 2), (1.2, 1), (1.5, 0)):
+        found = passed(some, [5.0] * 3, sharp=sharp, added=added, shapes=shapes)
+        assert np.flatnonzero(found).tolist() == list(range(23 - columns, 23))

@@ -88,15 +88,14 @@ def test_summits_become_sharper_as_those_of_drawn_critical_points_do():
     hessian = np.array([[3.0 * cross, cross, 0.0], [cross, 3.0 * cross, 0.0], [0.0, 0.0, cross]])
     z, xx, yy, xy = drawn_points(SURFACE.height, [m2, m2, 0.0], hessian)
     determinant, curvature = xx * yy - xy**2, -(xx + yy) / 2.0
-    motion = SummitMotion(
-        7.0, np.array([[0.9, 0.3], [0.3, 0.5]]), np.array([[8.0, 1.0], [1.0, 5.0]])
-    )
+    changes = np.array([[0.9, 0.3], [0.3, 0.5]]), np.array([[8.0, 1.0], [1.0, 5.0]])
+    motion = SummitMotion(np.full(1, 7.0), *(each[..., None] for each in changes))
     summit = (determinant > 0.0) & (xx < 0.0) & (z > 2.0)
     near = summit & (abs(curvature - limit) < 0.1)
     # The velocity of a summit: minus the inverse of the second derivatives, times the changes.
     rng = np.random.default_rng(5)
     slopes, gradients = (
-        rng.multivariate_normal([0.0, 0.0], each, near.sum()).T for each in motion[1:]
+        rng.multivariate_normal([0.0, 0.0], each, near.sum()).T for each in changes
     )
     xx, yy, xy = (each[near] for each in (xx, yy, xy))
     velocity = np.array([xy * slopes[1] - yy * slopes[0], xy * slopes[0] - xx * slopes[1]])
