@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.polynomial.laguerre import laggauss
 from numpy.polynomial.legendre import leggauss
 
@@ -19,13 +20,12 @@ from lube.physics.excursions import SurfaceMoments
 from lube.types import Array, Values
 
 _MANY, _FEW = 60, 20
-"""Nodes for heights and for curvatures; with the few, and eight for each other variable, fractions
-are off by 0.001."""
+"""Nodes for heights and for curvatures; with the few, and the others for d and t, fractions are off
+by 0.001."""
 _NODES = {count: (*laggauss(count), *leggauss(count)) for count in (_MANY, _FEW)}
-_NORMAL, _NORMAL_WEIGHTS = np.polynomial.hermite_e.hermegauss(8)
-_NORMAL_WEIGHTS /= _NORMAL_WEIGHTS.sum()
-_WIDE = 9.0
-"""Standard deviations beyond which a normal density is left out."""
+_OTHERS = leggauss(12)
+_WIDE, _NEAR = 9.0, 5.0
+"""Standard deviations beyond which the normal density of mean curvatures, or of d and t, is cut."""
 
 
 class SummitMotion(NamedTuple):
@@ -163,7 +163,8 @@ def sharp_surface_summit_share(
     array([0.866])
     """
     summits = _every_summit(level, moments, curvatures)
-    return summits.sharper(curvature) / summits.sharper(0.0)
+    # The sums are not exact to the last digits.
+    return np.minimum(summits.sharper(curvature) / summits.sharper(0.0), 1.0)
 
 
 def sharpening_summits(
@@ -219,23 +220,27 @@ def sharpening_summits(
         curvatures = 0.25 * moments.curvature * np.diag([1.0, 0.5, 0.5])
 
     def speed(kappa, difference, twist):
-        determinant = _determinant(kappa, difference, twist)
+        determinant = kappa**2 - difference**2 - twist**2
         # The inverse of H times its determinant; both signs are alike.
         rows = (kappa - difference, -twist), (-twist, kappa + difference)
         square = _apart(change, 2) * determinant**2
         for i, j, k, m in itertools.product(range(2), repeat=4):
             both = _apart(slopes[j, k] * gradients[m, i], 2)
             square = square + rows[i][j] * rows[k][m] * both
-        return np.where(determinant > 0.0, np.sqrt(np.maximum(square, 0.0)), 0.0)
+        return np.sqrt(square)
 
-    summits = _summits(level, moments, _weight(moments, curvatures, speed), _FEW)
+    def mean_speed(kappa, difference, twist, spread):
+        bound = np.sqrt(np.maximum(kappa**2 - difference**2, 0.0))
+        return _mean(lambda twist: speed(kappa, difference, twist), twist, spread, bound)
+
+    summits = _summits(level, moments, _weight(moments, curvatures, mean_speed), _FEW)
     return summits.at(curvature) / every / math.sqrt(2.0 * math.pi)
 
 
 def _every_summit(level, moments, curvatures):
     """Summits of a surface above levels, each of which counts."""
     if curvatures is not None:
-        return _summits(level, moments, _weight(moments, curvatures, _determinant), _FEW)
+        return _summits(level, moments, _weight(moments, curvatures, _mean_determinant), _FEW)
     spread = 0.25 * moments.curvature
 
     def determinant(kappa, _):
@@ -244,12 +249,22 @@ def _every_summit(level, moments, curvatures):
     return _summits(level, moments, determinant, _MANY)
 
 
-def _determinant(kappa, difference, twist):
-    return np.maximum(kappa**2 - difference**2 - twist**2, 0.0)
+def _mean_determinant(kappa, difference, twist, spread):
+    """Mean of the Gaussian curvature, where it is positive, over a normal twist."""
+    square = np.maximum(kappa**2 - difference**2, 0.0)
+    half = np.sqrt(square)
+    low, high = (-half - twist) / spread, (half - twist) / spread
+    inside = scipy.special.ndtr(high) - scipy.special.ndtr(low)
+    at_low, at_high = (np.exp(-0.5 * end**2) / math.sqrt(2.0 * math.pi) for end in (low, high))
+    found = (square - twist**2 - spread**2) * inside - 2.0 * twist * spread * (at_low - at_high)
+    return found - spread**2 * (low * at_low - high * at_high)
 
 
 def _weight(moments, curvatures, of_curvatures):
-    """Mean of a function of a summit's mean curvature, d and t, by the first and its mean."""
+    """Mean of a function of a summit's mean curvature, d and t, by the first and its mean.
+
+    The function is given the mean and the spread of t, over which it takes its own mean.
+    """
     height, along, across, mixed, square = moments
     spread, slopes = 0.25 * square, 0.5 * (along + across)
     # The two others at a given height, then at a given mean curvature, too: normal, with means that
@@ -268,15 +283,24 @@ def _weight(moments, curvatures, of_curvatures):
     def weight(kappa, mean):
         difference = by_height[1] / by_height[0] * mean + by_curvature[0] * (kappa - mean)
         twist = by_height[2] / by_height[0] * mean + by_curvature[1] * (kappa - mean)
-        total = 0.0
-        for one, chance in zip(_NORMAL, _NORMAL_WEIGHTS, strict=True):
-            differs = difference + first * one
-            for other, times in zip(_NORMAL, chance * _NORMAL_WEIGHTS, strict=True):
-                twisted = twist + (shared * one + second * other)
-                total = total + times * of_curvatures(kappa, differs, twisted)
-        return total
+
+        def at(differs):
+            given = twist + shared / first * (differs - difference)
+            return of_curvatures(kappa, differs, given, second)
+
+        return _mean(at, difference, first, np.abs(kappa))
 
     return weight
+
+
+def _mean(function, mean, spread, bound):
+    """Mean of a function of a normal variable that is 0 beyond a bound to either side."""
+    low, high = (np.clip(mean + side * spread, -bound, bound) for side in (-_NEAR, _NEAR))
+    total, half = 0.0, 0.5 * (high - low)
+    for one, part in zip(*_OTHERS, strict=True):
+        at = low + half * (1.0 + one)
+        total = total + part * np.exp(-0.5 * ((at - mean) / spread) ** 2) * function(at)
+    return total * half / (spread * math.sqrt(2.0 * math.pi))
 
 
 class _Summits(NamedTuple):

@@ -122,3 +122,15 @@ def drawn_points(height, slopes, hessian):
     covariance[0, 1:] = covariance[1:, 0] = -np.asarray(slopes)
     rng = np.random.default_rng(4)
     return rng.multivariate_normal(np.zeros(4), covariance, 2_000_000).T
+
+
+@pytest.mark.parametrize("curvature", [20.0, 100.0, 1e4])
+def test_two_ways_to_sum_over_the_summits_of_an_isotropic_surface_agree(curvature):
+    """Nayak's closed form, and the mean over difference and twist."""
+    moments = SurfaceMoments(1.0, 2.0, 2.0, 0.0, curvature)
+    curvatures, limits = 0.25 * curvature * np.diag([1.0, 0.5, 0.5]), np.linspace(0.05, 4.0, 40)
+    for level in (1.5, 4.0, 8.0):
+        known = np.full(limits.size, level), moments, 0.5 * np.sqrt(curvature) * limits
+        found = sharp_surface_summit_share(*known, curvatures)
+        np.testing.assert_allclose(found, sharp_surface_summit_share(*known), atol=0.002)
+        assert found.max() <= 1.0
