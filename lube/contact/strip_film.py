@@ -362,24 +362,25 @@ def summit_motion(
         Of the surfaces in the gap.
     """
     waves = [surface_waves(spec, roller) for roller in range(len(spec.lines))]
-    each = zip(answered, waves, strict=True)
-    powers = [np.atleast_2d(_square(kept) * power) for (kept, _), (*_, power) in each]
-    slopes = [np.stack(own) for *own, _ in waves]
-    means = [0.5 * np.sum(own**2, axis=0) for own in slopes]
+    means = [0.5 * (along**2 + across**2) for along, across, _ in waves]
+    powers = [
+        np.atleast_2d(_square(kept) * power)
+        for (kept, _), (*_, power) in zip(answered, waves, strict=True)
+    ]
     # Seen in motion with the mean of both, their changes are independent of what they are.
     curved = [np.sum(power * mean**2, axis=1) for power, mean in zip(powers, means, strict=True)]
     speeds = np.array(surface_speeds(1.0, slide_to_roll_ratio))
     mean_speed = np.average(np.broadcast_to(speeds[:, None], np.shape(curved)), 0, curved)
     change, moving, standing = 0.0, 0.0, 0.0
-    for roller, (speed, own, mean) in enumerate(zip(speeds, slopes, means, strict=True)):
-        kept, changing = answered[roller]
-        rate = 1j * (mean_speed - speed)[:, None] * own[0] * kept + mean_speed[:, None] * changing
-        moved = waves[roller][2] * _square(rate)
+    for roller, (along, across, drawn) in enumerate(waves):
+        (kept, changing), mean = answered[roller], means[roller]
+        own = (mean_speed - speeds[roller])[:, None]
+        moved = drawn * _square(1j * own * along * kept + mean_speed[:, None] * changing)
         change = change + np.sum(moved * mean**2, axis=1)
-        moving = moving + np.einsum("iw,jw,cw->ijc", own, own, moved)
-        by_curvature = mean ** np.arange(3)[:, None]
-        power = powers[roller]
-        standing = standing + np.einsum("iw,jw,kw,cw->kijc", own, own, by_curvature, power)
+        slopes, by_curvature = np.stack([along, across]), mean ** np.arange(3)[:, None]
+        moving = moving + np.einsum("iw,jw,cw->ijc", slopes, slopes, moved)
+        each = slopes, slopes, by_curvature, powers[roller]
+        standing = standing + np.einsum("iw,jw,kw,cw->kijc", *each)
     (first, second), mixed, gradients = standing
     inverse = np.array([[second[1], -first[1]], [-first[1], first[0]]])
     inverse /= first[0] * second[1] - first[1] ** 2
