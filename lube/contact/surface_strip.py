@@ -338,7 +338,7 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     rows = max(int(pair.length / down), 1)
     results = {}
     for which, (name, of_contacts) in enumerate(_COUNTS.items()):
-        # The limits are even in the number of contacts: near 1 a probability scatters to one side.
+        # The limits are of the number of contacts: near 1 a probability scatters to one side.
         limits = jackknife_interval(first[:, :, which], partial(first_contacts, rows=rows))
         results |= values_with_limits(name, [-np.expm1(-each) for each in limits])
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))

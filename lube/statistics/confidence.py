@@ -49,7 +49,8 @@ def error_of_limits(limits: Sequence[Array]) -> Array:
     ----------
     limits : sequence of numpy.ndarray
         The probability, its lower and its upper 95 % limit, as from
-        `lube.contact.surface_strip.surface_contact`: as far from it in log(1 - P), unless cut at 0.
+        `lube.contact.surface_strip.surface_contact`: by the same factor of -log(1 - P) to either
+        side, or 0 and an upper limit.
 
     Returns
     -------
@@ -58,12 +59,14 @@ def error_of_limits(limits: Sequence[Array]) -> Array:
 
     Examples
     --------
-    >>> rare_and_frequent = np.array([[0.02, 0.9], [0.0, 0.8], [0.06, 0.95]])
+    >>> rare_and_frequent = np.array([[0.02, 0.9], [0.01, 0.8], [0.04, 0.95]])
     >>> error_of_limits(rare_and_frequent).round(3)
-    array([0.02 , 0.035])
+    array([0.007, 0.041])
     """
     mean, lower, upper = (-np.log1p(-np.minimum(limit, 1.0 - 1e-12)) for limit in limits)
-    return 0.5 * np.exp(-mean) * np.where(mean < 0.5, upper - mean, mean - lower)
+    seen, rare = mean > 0.0, mean < 0.5
+    factor = np.where(rare, upper, mean) / np.where(seen, np.where(rare, mean, lower), 1.0)
+    return 0.5 * np.exp(-mean) * np.where(seen, mean * np.log(np.where(seen, factor, 1.0)), upper)
 
 
 def mean_or_nan(values: Array) -> float:
@@ -290,7 +293,9 @@ def mean_interval(values: Array, most: float = np.inf) -> tuple[Array, Array, Ar
     count = values.shape[0]
     mean = mean_over_first(values)
     error = np.sqrt(mean_over_first(np.square(values - mean)) / (count - 1))
-    return _student_interval(mean, error, count, most)
+    half = _student(count) * error
+    limits = mean, np.maximum(mean - half, 0.0), mean + half
+    return tuple(np.minimum(limit, most) for limit in limits)
 
 
 def jackknife_interval(
@@ -303,7 +308,8 @@ def jackknife_interval(
 
     .. math:: s^2 = \frac{R - 1}{R} \sum_r \left( f_{(r)} - f_{(\cdot)} \right)^2
 
-    and the interval follows with Student's t for R - 1 degrees of freedom.
+    and the interval is, with Student's t for R - 1 degrees of freedom, from
+    :math:`f e^{-t s/f}` to :math:`f e^{t s/f}`: a mean of few large values scatters upwards.
 
     Parameters
     ----------
@@ -315,7 +321,7 @@ def jackknife_interval(
     Returns
     -------
     result, lower, upper : numpy.ndarray
-        Shape of the function's result, from zero on.
+        Shape of the function's result; all are zero where it is.
 
     References
     ----------
@@ -324,17 +330,17 @@ def jackknife_interval(
     Examples
     --------
     >>> [f"{x:.2f}" for x in jackknife_interval(np.array([1.0, 2.0, 3.0]), lambda mean: mean)]
-    ['2.00', '0.00', '4.48']
+    ['2.00', '0.58', '6.93']
     """
     count = values.shape[0]
     mean = mean_over_first(values)
     without = np.stack([function((count * mean - one) / (count - 1)) for one in values])
     error = np.sqrt((count - 1) * mean_over_first(np.square(without - mean_over_first(without))))
-    return _student_interval(function(mean), error, count)
+    result = function(mean)
+    factor = np.exp(_student(count) * error / np.where(result > 0.0, result, 1.0))
+    return result, result / factor, result * factor
 
 
-def _student_interval(result, error, count, most=np.inf):
-    """Limits of a result, from its standard error and the count of the values behind it."""
-    half = scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0) * error
-    limits = result, np.maximum(result - half, 0.0), result + half
-    return tuple(np.minimum(limit, most) for limit in limits)
+def _student(count):
+    """Student's quantile of a mean of so many values."""
+    return scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0)

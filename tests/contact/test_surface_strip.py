@@ -64,6 +64,15 @@ def test_limits_hold_the_probability_where_contact_is_nearly_certain():
     assert 0.92 < held / len(seen) < 0.98
 
 
+def test_a_surface_that_tells_most_leaves_a_lower_limit():
+    """Where contact is certain, some strips weigh far more than others."""
+    first = 0.01 * 0.99 ** np.arange(30)
+    of_surfaces = np.append(np.full(23, 0.3), 17.0)[:, None] * first
+    mean, lower, upper = jackknife_interval(of_surfaces, partial(first_contacts, rows=1000))
+    assert 9.0 < mean < 11.0
+    assert 1.0 < lower < 3.0 and 30.0 < upper < 100.0
+
+
 def test_a_formula_that_flattens_the_roughness_is_refused(spec, film, study):
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[0])
     gap = Gap("computed", "venner-1997")
