@@ -112,9 +112,7 @@ def moments_in_gap(waves: Sequence[Array], answer: SurfaceAnswer, position: Arra
     """
     filters = answer.filters_at(*waves[:2])
     changed = np.any(filters, axis=1)
-    shapes, filters = answer.at(position / answer.half_width), filters[changed]
-    kept = 1.0 + np.einsum("cm,wm->cw", shapes, filters)
-    slopes = np.einsum("cm,wm->cw", np.gradient(shapes, position, axis=0), filters)
+    kept, slopes = itertools.islice(_kept(filters[changed], answer, position), 2)
 
     def moments(some, kept, slopes):
         along, across, power = (each[some] for each in waves)
@@ -141,7 +139,8 @@ def summit_moments(waves: Sequence[Array], answer: SurfaceAnswer, position: Arra
         along the rollers, of half their difference, and of the twist, 1/m, positive at summits.
     """
     along, across, power = waves
-    kept, slopes, bent = itertools.islice(_kept(waves, answer, position), 3)
+    filters = answer.filters_at(along, across)
+    kept, slopes, bent = itertools.islice(_kept(filters, answer, position), 3)
     first = along**2 * kept - 2j * along * slopes - bent
     second, twist = across**2 * kept, across * (along * kept - 1j * slopes)
     each = np.stack([kept, 0.5 * (first + second), 0.5 * (first - second), twist])
@@ -161,12 +160,13 @@ def waves_in_gap(waves: Sequence[Array], answer: SurfaceAnswer, position: Array)
     list of numpy.ndarray of complex, shape (columns, waves)
         Height of each wave over that as drawn, and its derivative along rolling, 1/m.
     """
-    return list(itertools.islice(_kept(waves, answer, position), 2))
+    filters = answer.filters_at(*waves[:2])
+    return list(itertools.islice(_kept(filters, answer, position), 2))
 
 
-def _kept(waves, answer, position):
-    """Yield how waves enter the gap at columns, and its derivatives along rolling."""
-    filters, shapes = answer.filters_at(*waves[:2]), answer.at(position / answer.half_width)
+def _kept(filters, answer, position):
+    """Yield the heights of waves in the gap over those as drawn, then derivatives along rolling."""
+    shapes = answer.at(position / answer.half_width)
     kept = 1.0 + np.einsum("cm,wm->cw", shapes, filters)
     while True:
         yield kept

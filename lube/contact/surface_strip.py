@@ -73,6 +73,8 @@ AT_ONCE = 10
 again: what the oil adds to the covariances takes 5 to 40 MB a point."""
 _ALL = 1.0 - 1e-12
 """Probability taken as certain."""
+_CERTAIN = 40.0
+"""Number of independent contacts from which on the probability is 1 in floating point."""
 _COUNTS = {"geometric_contact_probability": "contacts", "breakthrough_probability": "breakthroughs"}
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
 _RATIO = "breakdown_ratio"
@@ -339,7 +341,7 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     results = {}
     for which, (name, of_contacts) in enumerate(_COUNTS.items()):
         # The limits are of the number of contacts: near 1 a probability scatters to one side.
-        limits = jackknife_interval(first[:, :, which], partial(first_contacts, rows=rows))
+        limits = jackknife_interval(first[:, :, which], partial(_up_to_certain, rows=rows))
         results |= values_with_limits(name, [-np.expm1(-each) for each in limits])
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
     in_contact, broken = (mean_interval(along * numbers[:, :, which]) for which in (2, 3))
@@ -353,6 +355,11 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
         most = results[f"{geometric}{end}"]
         results[f"{breakthrough}{end}"] = np.minimum(results[f"{breakthrough}{end}"], most)
     return results
+
+
+def _up_to_certain(first, rows):
+    """As `first_contacts`; greater numbers scatter far, and tell nothing more."""
+    return np.minimum(first_contacts(first, rows), _CERTAIN)
 
 
 def _reach(spec, spacing):

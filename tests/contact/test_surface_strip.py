@@ -73,6 +73,16 @@ def test_a_surface_that_tells_most_leaves_a_lower_limit():
     assert 1.0 < lower < 3.0 and 30.0 < upper < 100.0
 
 
+def test_numbers_beyond_certainty_do_not_scatter():
+    """Without one surface every row would touch, so far as the others tell."""
+    first = np.zeros((24, 30))
+    first[:, 0] = 0.9
+    first[0, :2] = 0.1, 0.4
+    function = partial(surface_strip._up_to_certain, rows=1000)
+    _, lower, upper = -np.expm1(-np.array(jackknife_interval(first, function)))
+    assert lower == upper == 1.0
+
+
 def test_a_formula_that_flattens_the_roughness_is_refused(spec, film, study):
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[0])
     gap = Gap("computed", "venner-1997")

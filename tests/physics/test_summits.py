@@ -41,7 +41,7 @@ def test_sharp_summits_by_numerical_integration(level):
 
 
 def test_the_layer_breaks_at_the_curvature_where_the_remaining_thickness_is_critical():
-    """Of a parabola of any height: Eqs. 5 and 6 by hand."""
+    """Eqs. 5 and 6 are worked out by hand for parabolas of two heights."""
     modulus, critical, strength = 1.154e11, 5e-9, 1e6
     curvature = breaking_curvature(modulus, critical, strength)
     for height in (1e-9, 3e-8):
