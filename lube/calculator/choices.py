@@ -69,6 +69,11 @@ class Choices:
     inlet_meniscus: float | None = None
     slip: types.Values = 0.0
 
+    @property
+    def has_surfaces(self) -> bool:
+        """Whether surfaces touch, so that the film comes with their share of the load."""
+        return "surface" in self.models or self.load_sharing != "none"
+
     @classmethod
     def of(
         cls,

@@ -160,7 +160,7 @@ def contact_probability(
         found = joined(table, contact, pair_probabilities(pair, table, slip))
     if "surface" in choices.models:
         found = found.assign(of_surface(pair, table, slip))
-    if "surface_load_share" in table:
+    if choices.has_surfaces:
         found["surface_load_share"] = table["surface_load_share"]
     if assumed.wanted:
         samples = assumed.probabilities(conditions_of(table, choices))

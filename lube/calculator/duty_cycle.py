@@ -154,7 +154,7 @@ def duty(
         for name in (*kinds, *_OF_PAIR):
             of_points = parts[f"surface_breakthrough_{name}"]
             whole[f"whole_surface_{name}"] = (of_points * share).sum(skipna=False)
-    if "surface_load_share" in table:
+    if choices.has_surfaces:
         parts = parts.assign(surface_load_share=table["surface_load_share"])
     if assumed.wanted:
         samples = assumed.probabilities(given | {"slide_to_roll_ratio": slip})

@@ -178,11 +178,10 @@ def film_model(rollers: Rollers, choices: Choices) -> dict[str, Any]:
     choices.gap.check_slip(choices.slip)
     answered = {"line": "answered_lines", "surface": "answered_surfaces"}
     used = choices.models if choices.gap.is_answered else ()
-    has_surfaces = "surface" in choices.models or choices.load_sharing != "none"
     return {
         "with_shape": choices.gap.has_shape,
         "slide_to_roll_ratio": choices.slip,
-        "rough_surfaces": rollers.lines if has_surfaces else None,
+        "rough_surfaces": rollers.lines if choices.has_surfaces else None,
         "load_sharing": choices.load_sharing,
         "inlet_shear_heating": choices.inlet_shear_heating,
         "inlet_meniscus": choices.inlet_meniscus,

@@ -102,8 +102,10 @@ def required_film(
     found = search.films(half_width, points_at)
     film = film_in_si(rollers, Oil(_ANY_OIL), (force, "N"), "100 rpm", "60 degC", FORMULA, choices)
     factor = xr.DataArray(found["film_thickness"][0]) / film["film_thickness"]
-    film = scaled_film(film, factor).assign(lambda_ratio=factor * film["lambda_ratio"])
-    if "surface_load_share" in film:
+    film = scaled_film(film, factor, has_shape=False).assign(
+        lambda_ratio=factor * film["lambda_ratio"]
+    )
+    if choices.has_surfaces:
         film["surface_load_share"] = surface_load_share(film, rollers.lines, has_shape=False)
     return labelled(found, film, rollers, choices)
 

@@ -110,7 +110,7 @@ def required_roughness(
 
     def table_at(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
-        return scaled_film(film, xr.DataArray(ratios / own, dims="film"))
+        return scaled_film(film, xr.DataArray(ratios / own, dims="film"), gap.has_shape)
 
     def points_at(ratios):
         factors = xr.DataArray(factor_at(ratios), dims="film")
@@ -129,7 +129,7 @@ def required_roughness(
     sigma = rollers.pair.composite_rms_roughness * factor
     found = {"roughness_factor": factor, "composite_rms_roughness": sigma, "lambda_ratio": ratios}
     changed = {name: factor[0] * film[name] for name in _CHANGED if name in film}
-    if "surface_load_share" in film:  # pressures grow with heights and film
+    if choices.has_surfaces:  # pressures grow with heights and film
         share_here = surface_load_share(table_at(ratios[:1]), rollers.lines, gap.has_shape)
         changed["surface_load_share"] = factor[0] * share_here
     changed["lambda_ratio"] = xr.full_like(film["lambda_ratio"], ratios[0])

@@ -114,13 +114,13 @@ def shaping(film: xr.Dataset) -> Callable[[xr.DataArray], xr.DataArray]:
     return shaped
 
 
-def scaled_film(film: xr.Dataset, factor: xr.DataArray) -> xr.Dataset:
-    """Multiply films by a factor, with their shape and the gap around the contact if known.
+def scaled_film(film: xr.Dataset, factor: xr.DataArray, has_shape: bool) -> xr.Dataset:
+    """Multiply films by a factor, with their shape and the gap around the contact if they have one.
 
     A scaled profile reaches as far as rollers rougher by the inverse factor may touch.
     """
     scaled = {"film_thickness": factor * film["film_thickness"]}
-    if "film_profile" in film:
+    if has_shape:
         film = _continued(film, film["composite_rms_roughness"].max() / factor.min())
         scaled["film_profile"] = factor * shaped_films(film)
     return film.assign(scaled)

@@ -208,7 +208,9 @@ class Deviating:
             table["inlet_shear_heating_factor"] = xr.ones_like(table["moes_load"])
         table.update({name: points[name] for name in GIVEN if name in points})
         if "roughness_factor" in table:
-            return scaled_film(table, 1.0 / table["roughness_factor"])
+            return scaled_film(
+                table, 1.0 / table["roughness_factor"], shape.get("with_shape", False)
+            )
         return table
 
     def _rollers(self, values, points):

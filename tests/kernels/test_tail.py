@@ -5,13 +5,12 @@ import pytest
 
 from lube.kernels.tail import touching_runs, touching_windows
 
-RNG = np.random.default_rng(3)
 FACTOR = 15.0
 
 
-def smooth_line(points):
+def smooth_line(points, rng):
     """A line with wide and narrow waves, so that runs have many lengths."""
-    noise = RNG.standard_normal(points)
+    noise = rng.standard_normal(points)
     return (3.0 * np.convolve(noise, np.ones(5) / 5.0, "same")).astype(np.float32)
 
 
@@ -42,11 +41,12 @@ def film(request):
 
 
 def test_windows_are_weighed_as_by_a_naive_implementation(film):
-    line, width = smooth_line(3000), film.size
+    rng = np.random.default_rng(3)
+    line, width = smooth_line(3000, rng), film.size
     correlation = correlation_of(width, 6.0)
     starts = np.arange(60) * 47
-    origins = RNG.integers(0, width, 60)
-    heights = (film[origins] + RNG.exponential(0.8, 60)).astype(np.float32)
+    origins = rng.integers(0, width, 60)
+    heights = (film[origins] + rng.exponential(0.8, 60)).astype(np.float32)
     expected = np.zeros(2)
     for start, origin, height in zip(starts, origins, heights, strict=True):
         window = line[start : start + width]
@@ -62,11 +62,12 @@ def test_windows_are_weighed_as_by_a_naive_implementation(film):
 
 
 def test_runs_are_weighed_as_by_a_naive_implementation():
-    lines, reach, film = (smooth_line(6000), smooth_line(6000)), 60, np.float32(3.5)
+    rng = np.random.default_rng(3)
+    lines, reach, film = [smooth_line(6000, rng) for _ in range(2)], 60, np.float32(3.5)
     width = 9
     covariances = tuple(correlation_of(reach + 1, width) / 2.0 for width in (4.0, 7.0))
     places = reach + 10 + np.arange(120) * 40
-    heights = (film + RNG.exponential(0.8, 120)).astype(np.float32)
+    heights = (film + rng.exponential(0.8, 120)).astype(np.float32)
     expected = np.zeros(10)
     for place, height in zip(places, heights, strict=True):
         around = slice(place - reach, place + reach + 1)

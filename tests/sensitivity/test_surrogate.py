@@ -4,11 +4,10 @@ import scipy.special
 
 from lube.sensitivity.surrogate import Surrogate, held_out, interpolant
 
-RNG = np.random.default_rng(3)
-
 
 def points(count, variables=3):
-    return RNG.uniform([[0.5]] * variables, [[4.0]] * variables, (variables, count))
+    rng = np.random.default_rng(count)
+    return rng.uniform([[0.5]] * variables, [[4.0]] * variables, (variables, count))
 
 
 def smooth(variables):
