@@ -17,10 +17,9 @@ _EXAMPLES = {
     **{"1/K": "6.4e-4 1/K", "1/GPa": "16 1/GPa", "W/m/K": "0.16 W/m/K"},
 }
 _UNITS = (
-    *("m", "cm", "mm", "um", "µm", "nm", "pm", "N", "kN", "Pa", "kPa", "MPa", "GPa", "bar", "rpm"),
-    *("1/min", "Hz", "kHz", "degC", "K", "s", "ms", "us", "V", "mV", "uV", "ohm", "kohm", "Mohm"),
-    *("mm^2/s", "Pa*s", "mPa*s", "kg/m^3", "1/K", "1/GPa", "W/m/K"),
-)
+    "m cm mm um µm nm pm N kN Pa kPa MPa GPa bar rpm 1/min Hz kHz degC K s ms us V mV uV ohm kohm "
+    "Mohm mm^2/s Pa*s mPa*s kg/m^3 1/K 1/GPa W/m/K"
+).split()
 """Units that people use; each is refused where it is of the wrong dimension."""
 
 _NUMBER = r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(\s*/\s*\d+)?"

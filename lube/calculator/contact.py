@@ -177,8 +177,9 @@ def of_surface(
     share = [found[f"breakthrough_probability{end}"] for end in LIMITS]
     slips, ratio = xr.full_like(share[0], 1.0) * slip, np.ones(share[0].shape)
     if slips.any():
-        of_turn = share[0].values.ravel(), slips.values.ravel(), np.ones(slips.size), 0.0
-        ratio = surface_scatter(pair, table, *of_turn).reshape(slips.shape)
+        ratio = surface_scatter(
+            pair, table, share[0].values.ravel(), slips.values.ravel(), np.ones(slips.size), 0.0
+        ).reshape(slips.shape)
     size = revolution_size(pair.spec, found)
     of_pair = surface_prediction([each.values for each in share], size, ratio)
     for end, limit in zip(LIMITS[1:], of_pair, strict=True):

@@ -81,8 +81,9 @@ def indicators(
         element = 2.0 * min(pair.first.radius, pair.second.radius)
         diameter = single(amount("pitch_diameter", pitch_diameter, "m", above=element))
         speed = bearing_speed(table["entrainment_speed"], diameter, element)
-        given = oil.at(table["temperature"])["kinematic_viscosity"], speed, diameter
-        found["viscosity_ratio"] = xr.apply_ufunc(viscosity_ratio, *given)
+        found["viscosity_ratio"] = xr.apply_ufunc(
+            viscosity_ratio, oil.at(table["temperature"])["kinematic_viscosity"], speed, diameter
+        )
     return with_remarks(found, table, rollers)
 
 

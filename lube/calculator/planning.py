@@ -130,9 +130,15 @@ def plan(
         ratio = planning.line_ratios(pair, table, slip, records)
     error = planning.relative_error(found.probability, size, ratio[:, None], reading)
     oils, dims = oil.at(table["temperature"]), table["film_thickness"].dims
-    given = oils, rollers.pair, table["force"], table["speed"], formula
     # Heating does not depend on the coefficient.
-    slope = planning.film_by_coefficient(*given, inlet_meniscus=choices.inlet_meniscus)
+    slope = planning.film_by_coefficient(
+        oils,
+        rollers.pair,
+        table["force"],
+        table["speed"],
+        formula,
+        inlet_meniscus=choices.inlet_meniscus,
+    )
     by_coefficient = slope.transpose(*dims).values.ravel()
     widths = planning.half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
     shape, read = table["film_thickness"].shape, (*thresholds.dims, *dims)

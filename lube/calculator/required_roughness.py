@@ -91,8 +91,7 @@ def required_roughness(
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
     search = FilmSearch(assumed, share, realisations)
 
-    conditions = oil, force, speed, temperature, one
-    film = film_in_si(rollers, *conditions, choices)
+    film = film_in_si(rollers, oil, force, speed, temperature, one, choices)
     own = single(film["lambda_ratio"])
     check_known(np.isfinite(own))
 
@@ -105,7 +104,10 @@ def required_roughness(
         # What the oil does to the roughness does not change how much its asperities carry.
         as_drawn = replace(choices, gap=Gap(film_shape))
         levels = own / RATIOS[::-1]
-        films = [film_in_si(_rougher(rollers, each), *conditions, as_drawn) for each in levels]
+        films = [
+            film_in_si(_rougher(rollers, each), oil, force, speed, temperature, one, as_drawn)
+            for each in levels
+        ]
         factor_at, least = _factors(films, levels)
 
     def table_at(ratios):

@@ -178,8 +178,9 @@ class StripFilm:
         if self.answers:
             products = sum(self._of_each(summit_moments, spec, self._columns(spacing))).T
             height, mean, half, mixed = products[0]
-            slopes = mean + half, mean - half, mixed
-            moments = excursions.SurfaceMoments(height, *slopes, 4.0 * products[1, 1])
+            moments = excursions.SurfaceMoments(
+                height, mean + half, mean - half, mixed, 4.0 * products[1, 1]
+            )
             curvatures = products[1:, 1:]
         elif self.has_edges:  # the same everywhere
             films, sharp, density = films[:1], sharp[:1], density[:1]

@@ -124,8 +124,16 @@ class _Passage:
             summits, by_oil = _selected(summits, some), by_oil[:, some]
             nodes = 1.0 + np.arange(self._film.size) / (1 << oil.shift)
             shapes = _interpolated(oil.shapes, nodes[None])
-        strip = self._film, self._sharp, shapes, self._has_edges
-        passing_contacts(summits, by_oil, *strip, self.first_step, contact)
+        passing_contacts(
+            summits,
+            by_oil,
+            self._film,
+            self._sharp,
+            shapes,
+            self._has_edges,
+            self.first_step,
+            contact,
+        )
 
 
 def _interpolated(values, places):

@@ -150,8 +150,8 @@ def surface_contact(
         seeds = surface_seeds(pair.seed, SURFACES // fewer)
         changed = np.broadcast_to(thicker, thickness.size)[known].tolist()
         changed = [one.thicker(times) for one, times in zip(some, changed, strict=True)]
-        choices = sharp, wanted, seeds, threads
-        for name, of_known in _contacts(pair, some, changed, *choices).items():
+        sampled = _contacts(pair, some, changed, sharp, wanted, seeds, threads)
+        for name, of_known in sampled.items():
             values[name][known] = of_known
     dims, shape = thickness.dims, thickness.shape
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
@@ -166,9 +166,9 @@ def surface_contact(
     def both_widths(slip, point):
         if point not in looked_at:
             return np.nan, np.nan
-        strip, choices = strips[point], (pair.spec, pair.length)
-        of_broken = strip.breakthrough_width(*choices, limits[point], slip)
-        return strip.passage_width(*choices, slip), of_broken
+        strip, spec, length = strips[point], pair.spec, pair.length
+        of_broken = strip.breakthrough_width(spec, length, limits[point], slip)
+        return strip.passage_width(spec, length, slip), of_broken
 
     both = np.vectorize(both_widths, otypes=[float, float])
     widths = xr.apply_ufunc(both, slide_to_roll_ratio, points, output_core_dims=[(), ()])
@@ -177,8 +177,9 @@ def surface_contact(
 
 def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:
     """Mean curvature of an overlap above which its boundary layer breaks, 1/m."""
-    layer = pair.layer.critical_thickness, pair.layer.shear_strength
-    return 0.5 * breaking_curvature(film["reduced_modulus"].item(), *layer)
+    return 0.5 * breaking_curvature(
+        film["reduced_modulus"].item(), pair.layer.critical_thickness, pair.layer.shear_strength
+    )
 
 
 def surface_seeds(seed: int, count: int) -> list:
@@ -244,12 +245,12 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
     recurring = RecurringContacts(spec) if perimeters[0] != perimeters[1] else None
     for point in np.flatnonzero(wanted):
         strip, share = strips[point], found["breakthrough_probability"][point]
-        contacts = share, *strip.common(spec, length)
-        found["pair_deviation"][point] = pair_deviation(*contacts, perimeters[0])
+        common = strip.common(spec, length)
+        found["pair_deviation"][point] = pair_deviation(share, *common, perimeters[0])
         if recurring is not None:
             part = strip.breaking_part(spec, length, sharp[point])
             alone = recurring.at(strip.levels(spec).min(), part)
-            found["pair_deviation"][point] *= turn_ratio(*contacts, alone, perimeters) ** 0.5
+            found["pair_deviation"][point] *= turn_ratio(share, *common, alone, perimeters) ** 0.5
     return found
 
 
@@ -405,13 +406,26 @@ def _on_one_surface(surface, covariances, strips, reach, seeds):
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
         # Strips begin at nodes.
         places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))
-        searched = around, by_oil, surface.diagonal
-        drawn = fields, tops, covariances, places, touching
-        *each, contacts = touching_strips(*drawn, film, strip.sharp, fading, *searched)
+        diagonal = surface.diagonal
+        *each, contacts = touching_strips(
+            fields,
+            tops,
+            covariances,
+            places,
+            touching,
+            film,
+            strip.sharp,
+            fading,
+            around,
+            by_oil,
+            diagonal,
+        )
         first.append(weight * np.stack(each))
         if strip.is_certain:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
-            contacts = contacts_per_row(fields, covariances, some, film, strip.sharp, *searched)
+            contacts = contacts_per_row(
+                fields, covariances, some, film, strip.sharp, around, by_oil, diagonal
+            )
         else:
             contacts = weight * contacts
         numbers.append(contacts)

@@ -90,9 +90,8 @@ class Answer:
         changed = np.flatnonzero(np.abs(response - 1.0).max(axis=1))
         last = changed[-1] if changed.size else 1
         finer = np.geomspace(wavelength[0], wavelength[last], FINER * last + 1)
-        scaled = finer / half_width, wavelength / half_width
-        change = at_wavelengths(*scaled, response, position) - 1.0
-        shapes, filters = expanded(change, finer**STEEPNESS, importance)
+        answer = at_wavelengths(finer / half_width, wavelength / half_width, response, position)
+        shapes, filters = expanded(answer - 1.0, finer**STEEPNESS, importance)
         return cls(half_width, position, shapes, 2.0 * np.pi / finer, filters)
 
     def shift(self, spacing: float) -> int:

@@ -170,8 +170,9 @@ class ContactWindows:
             return counts
         for points, surfaces, window in self._meetings(pair):
             stride = max(1, (2 * self.half_windows[points[0]] + 1) // WINDOWS_PER_WIDTH)
-            motion = ratios, steps, -(-steps // stride)
-            found = shaped_trace(surfaces, *motion, window, self._factors[points])
+            found = shaped_trace(
+                surfaces, ratios, steps, -(-steps // stride), window, self._factors[points]
+            )
             counts[points] = means_of(found)
         return counts
 

@@ -147,8 +147,13 @@ def layer_factor_of(grid: LineGrid, reduced_modulus: float, boundary_layer) -> f
     float
         The factor, per height step of overlap.
     """
-    layer = boundary_layer.critical_thickness, boundary_layer.shear_strength
-    return layer_factor(reduced_modulus, *layer, grid.spacing, grid.height_step)
+    return layer_factor(
+        reduced_modulus,
+        boundary_layer.critical_thickness,
+        boundary_layer.shear_strength,
+        grid.spacing,
+        grid.height_step,
+    )
 
 
 def whole_numbers(film_thickness: Values, half_width: Values, grid: LineGrid) -> Pair:

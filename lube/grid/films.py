@@ -83,8 +83,9 @@ def film_at(
         groups = FilmGroups.at(lubricant, rollers, force, contact, inlet_meniscus)
         rows = [formula(name) for name in formulas]
         table = _films(rows, groups, contact)
-        heat = inlet_shear_heating, lubricant, contact, groups, slide_to_roll_ratio
-        table["inlet_shear_heating_factor"] = factor = _heating_factor(*heat)
+        table["inlet_shear_heating_factor"] = factor = _heating_factor(
+            inlet_shear_heating, lubricant, contact, groups, slide_to_roll_ratio
+        )
         if is_heated:
             table.update(table[_THINNED] * factor)
         if with_shape:
@@ -149,13 +150,18 @@ def _films_at(rows, groups, radius, thinner, part):
 
 
 def _heating_factor(model, lubricant, contact, groups, slip):
-    oil = lubricant["dynamic_viscosity"], lubricant["temperature_viscosity_coefficient"]
     speed, conductivity = contact["entrainment_speed"], lubricant["thermal_conductivity"]
-    loading = thermal_loading(*oil, speed, conductivity)
+    loading = thermal_loading(
+        lubricant["dynamic_viscosity"],
+        lubricant["temperature_viscosity_coefficient"],
+        speed,
+        conductivity,
+    )
     pressure = contact["hertz_pressure"] / (2.0 * contact["reduced_modulus"])
     film = xr.apply_ufunc(asymptotic_gap, *groups.moes_numbers, join="exact")
-    arguments = loading, slip, pressure, film
-    factor = xr.apply_ufunc(partial(heating_factor, model), *arguments, join="exact")
+    factor = xr.apply_ufunc(
+        partial(heating_factor, model), loading, slip, pressure, film, join="exact"
+    )
     unknown = int(factor.isnull().sum())
     if unknown and model != "none":
         log.warning(
@@ -197,12 +203,15 @@ class FilmGroups:
     ) -> "FilmGroups":
         """Form the groups for a contact from `hertz_contact`; other arguments as in `film_at`."""
         film_modulus = 2.0 * rollers.reduced_modulus
-        scale = film_modulus, rollers.reduced_radius
         viscosity = lubricant["dynamic_viscosity"]
         alpha = lubricant["pressure_viscosity_coefficient"]
         return cls(
-            dimensionless.dimensionless_load(force / rollers.length, *scale),
-            dimensionless.dimensionless_speed(viscosity, contact["entrainment_speed"], *scale),
+            dimensionless.dimensionless_load(
+                force / rollers.length, film_modulus, rollers.reduced_radius
+            ),
+            dimensionless.dimensionless_speed(
+                viscosity, contact["entrainment_speed"], film_modulus, rollers.reduced_radius
+            ),
             dimensionless.dimensionless_material(alpha, film_modulus),
             viscosity,
             film_modulus,
@@ -221,8 +230,14 @@ class FilmGroups:
         speed = 0.5 * (load / film["moes_load"]) ** 2
         material = film["moes_material"] / (2.0 * speed) ** 0.25
         meniscus = (film["inlet_meniscus"] / radius).item() if "inlet_meniscus" in film else None
-        oil = film["dynamic_viscosity"], 2.0 * film["reduced_modulus"]
-        return cls(load, speed, material, *oil, meniscus)
+        return cls(
+            load,
+            speed,
+            material,
+            film["dynamic_viscosity"],
+            2.0 * film["reduced_modulus"],
+            meniscus,
+        )
 
     @property
     def moes_numbers(self) -> tuple[xr.DataArray, xr.DataArray]:
@@ -260,8 +275,9 @@ class FilmGroups:
         if self.meniscus is None:
             return film
         half_width = np.sqrt(8.0 * self.load / np.pi)
-        scaled = film / half_width**2, self.meniscus / half_width
-        return film * xr.apply_ufunc(starvation_factor, *scaled, join="exact")
+        return film * xr.apply_ufunc(
+            starvation_factor, film / half_width**2, self.meniscus / half_width, join="exact"
+        )
 
     def thinned(self, factor: xr.DataArray) -> "FilmGroups":
         """Find the groups of films that heating thins by a factor.
@@ -279,8 +295,9 @@ class FilmGroups:
 
 def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Dataset:
     """Hertz contact of smooth, dry rollers; arguments as in `film_at`."""
-    pair = rollers.length, rollers.reduced_radius, rollers.reduced_modulus
-    half_width = hertz.contact_half_width(force, *pair)
+    half_width = hertz.contact_half_width(
+        force, rollers.length, rollers.reduced_radius, rollers.reduced_modulus
+    )
     found = {
         "reduced_radius": rollers.reduced_radius,
         "reduced_modulus": rollers.reduced_modulus,

@@ -81,8 +81,9 @@ def study_films_at_records(study: Study, experiment: xr.Dataset) -> xr.Dataset:
         Of `film_at_records`, what the ``comparison`` file has.
     """
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    choices = study.rough_rollers, study.film_formulas
-    table = film_at_records(experiment, oils, *choices, **study.film_model)
+    table = film_at_records(
+        experiment, oils, study.rough_rollers, study.film_formulas, **study.film_model
+    )
     unused = [name for name in table if name not in FILES["comparison"]]
     unused += [] if study.gap.has_shape else ["formula_place"]
     return table.drop_vars(unused)

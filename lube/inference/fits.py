@@ -106,8 +106,15 @@ def fit_layer_strength(curves: RecordCurves, study: Study, comparison: Data) -> 
         ``fitted_layer_strength_coverage`` as in `fit_alpha`.
     """
     tried, logits = strength_logits(curves, study.boundary_layer.strength, comparison)
-    known = study.boundary_layer.strength, logits, study, comparison, curves.contact_model
-    return _fits("fitted_layer_strength", tried, *known)
+    return _fits(
+        "fitted_layer_strength",
+        tried,
+        study.boundary_layer.strength,
+        logits,
+        study,
+        comparison,
+        curves.contact_model,
+    )
 
 
 def strength_logits(

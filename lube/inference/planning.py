@@ -174,8 +174,9 @@ def on_surfaces(
     share = contact["breakthrough_probability"].values.ravel()
     size = revolution_size(pair.spec, contact).ravel()
     records = np.repeat(np.array(turns)[:, None], share.size, axis=1)
-    motion = np.full(share.size, slide_to_roll_ratio), records, drift
-    ratios = surface_scatter(pair, film, share, *motion)
+    ratios = surface_scatter(
+        pair, film, share, np.full(share.size, slide_to_roll_ratio), records, drift
+    )
     tells = np.any([np.isfinite(relative_error(share, size, one)) for one in ratios], axis=0)
     touch = contact["geometric_contact_probability"].values.ravel()
     holds = tells & (share < (1.0 - HOLDS) * touch)

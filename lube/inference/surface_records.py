@@ -90,8 +90,9 @@ def surfaces_at_records(
     few, strengths = thickness[LAYER_FILMS], _layer_strengths(pair, first, thickness.median())
     of_layers = np.empty((strengths.size, few.size, row_of.size))
     for records, some in (part for part in parts if part[0].any()):
-        motion = slips[records], turns[records], study.rig.drift
-        scatter[records] = surface_scatter(pair, some, own[0, records], *motion)
+        scatter[records] = surface_scatter(
+            pair, some, own[0, records], slips[records], turns[records], study.rig.drift
+        )
         ones = xr.ones_like(some["film_thickness"])
         many = some.assign(film_thickness=thickness * ones)
         some = some.assign(film_thickness=few * ones)
@@ -177,8 +178,12 @@ def _numbers(study, contact):
 def _curve_ratios(study, first):
     """Lambda ratios of the curves, from theory for high, flat films."""
     moments, ratios = surface_moments(study.line_spec), np.geomspace(1.0, 20.0, 400)
-    size = study.rollers.length, 2.0 * first["contact_half_width"].mean().item()
-    contacts = expected_contacts(ratios * first["composite_rms_roughness"].item(), moments, *size)
+    contacts = expected_contacts(
+        ratios * first["composite_rms_roughness"].item(),
+        moments,
+        study.rollers.length,
+        2.0 * first["contact_half_width"].mean().item(),
+    )
     ends = np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
     return np.geomspace(*ends, CURVE_FILMS)
 
@@ -187,8 +192,12 @@ def _layer_strengths(pair, films, level):
     """Strengths of boundary layers, Pa/m, rising: the pair's, and those that some summits break."""
     factors = np.geomspace(1e-3, 1e3, 400)
     sharp = mean_breaking_curvature(pair, films) * factors
-    known = surface_moments(pair.spec), sharp, curvature_moments(pair.spec)
-    shares = sharp_surface_summit_share(np.full(sharp.size, level.item()), *known)
+    shares = sharp_surface_summit_share(
+        np.full(sharp.size, level.item()),
+        surface_moments(pair.spec),
+        sharp,
+        curvature_moments(pair.spec),
+    )
     others = np.exp(np.interp(np.negative(LAYER_SHARES), -shares, np.log(factors)))
     return pair.layer.strength * np.sort([1.0, *others])
 

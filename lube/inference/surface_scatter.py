@@ -219,10 +219,14 @@ def surface_scatter(
         part = part / slip_ratio(*known, broken=broken)
         if slip == 0.0 and spec.points[0] == spec.points[1]:
             part = np.zeros(2)  # both surfaces recur together
-        motion = speed_ratios(slip), spec.points, reach, part, drift
         alike = drifting_shares(share, *common, partial(recurring.drifted, film))
         of_turn = (slip_ratio(*known, min(one, 1.0), broken) for one in turns)
-        later = (scatter_ratio(max(one, 1.0), *motion, alike=alike) for one in turns)
+        later = (
+            scatter_ratio(
+                max(one, 1.0), speed_ratios(slip), spec.points, reach, part, drift, alike=alike
+            )
+            for one in turns
+        )
         return [first * more / rolling for first, more in zip(of_turn, later, strict=True)]
 
     found = map(of_record, slips.tolist(), durations, shares, strips)

@@ -229,8 +229,17 @@ def contacts_per_row(
     nodes, fading = np.empty(answered.shapes.shape[0], np.float32), np.zeros(film.size)
     oil = Oil(answered, by_known, nodes, np.empty(0, np.float32))
     for k in range(places[0].size):
-        place = reach, places[0][k], places[1][k], origin
-        moved = MovedSurface(fields, covariances, *place, unmoved, oil, Rows(heights, filled, k))
+        moved = MovedSurface(
+            fields,
+            covariances,
+            reach,
+            places[0][k],
+            places[1][k],
+            origin,
+            unmoved,
+            oil,
+            Rows(heights, filled, k),
+        )
         search = _Search(film, sharp, fading, seen, np.int32(k + 1), stack, diagonal)
         for row in range(first, around + 1):
             found = _row(moved, search, row, search.mark)

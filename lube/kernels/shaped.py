@@ -238,9 +238,11 @@ def shaped_trace(
         first_2 = surface_position(step, speed_ratios[1]) - window.before
         first_1, first_2 = first_1 % surfaces[0].line.size, first_2 % surfaces[1].line.size
         for f in range(len(window.films)):
-            own = window.films[f], least[f], answers, factors[f]
-            for which, found in enumerate(_window(lines, ahead, first_1, first_2, *own)):
-                trace[f, number, which] = found
+            found = _window(
+                lines, ahead, first_1, first_2, window.films[f], least[f], answers, factors[f]
+            )
+            for which, value in enumerate(found):
+                trace[f, number, which] = value
     return trace
 
 

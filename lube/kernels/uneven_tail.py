@@ -149,8 +149,9 @@ def touching_runs_under(
     with_known = np.empty(covariances.shape[:3])
     for m in range(places.size):
         known = touching[0][m]
-        place = places[m] - known, known
-        answered = _Answered(surfaces, covariances, with_known, *place, answers, shift)
+        answered = _Answered(
+            surfaces, covariances, with_known, places[m] - known, known, answers, shift
+        )
         with_known[..., 0] = answers[0, 0] = np.nan
         own = surfaces[0].line[places[m]] + surfaces[1].line[places[m]]
         rise = touching[1][m] - (own + _answers_at(answered, 0, known, 0, 0))

@@ -84,8 +84,10 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     known = {"line": _of_lines, "surface": _of_surfaces}
     contacts = {model: known[model](study, results) for model in study.contact_model}
     if "sensitivity" in results:
-        given = study, results["sensitivity"]
-        contacts = {model: _assumed(each, model, *given) for model, each in contacts.items()}
+        contacts = {
+            model: _assumed(each, model, study, results["sensitivity"])
+            for model, each in contacts.items()
+        }
     compared = study.contact_model if study.compares_surfaces else ("line",)
     return render(
         "findings.md",

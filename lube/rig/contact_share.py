@@ -85,8 +85,14 @@ class ContactShare:
         values = np.ascontiguousarray(values)
         while values.size:
             room = (BLOCKS << self._doublings) - self.samples
-            seen = self.samples, self._doublings
-            self._count(values[:room], *seen, self._limits, *self._triggers, self._counts)
+            self._count(
+                values[:room],
+                self.samples,
+                self._doublings,
+                self._limits,
+                *self._triggers,
+                self._counts,
+            )
             self.samples += min(room, values.size)
             values = values[room:]
             if self.samples == BLOCKS << self._doublings:

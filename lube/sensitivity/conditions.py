@@ -195,7 +195,10 @@ class Deviating:
         loads = points["force"] * (1.0 + values.get("force", 0.0))
         speeds = points["speed"] * (1.0 + values.get("speed", 0.0))
         table = film_at(
-            *(oil, self._rollers(values, points), loads, speeds),
+            oil,
+            self._rollers(values, points),
+            loads,
+            speeds,
             [formula if shape else STAND_IN.get(formula, formula)],
             slide_to_roll_ratio=points.get("slide_to_roll_ratio", rolling(study.slips)),
             inlet_shear_heating=heating,
@@ -218,8 +221,13 @@ class Deviating:
         pair, scale = self.study.rollers, 1.0 + values.get("young_modulus", 0.0)
         if "radius" in points:
             pair = pair.with_radii(points["radius"], points["second_radius"])
-        reduced = pair.reduced_radius, pair.reduced_modulus * scale
-        return DeviatingRollers(pair.first, pair.length, *reduced, self.rms_roughness(values))
+        return DeviatingRollers(
+            pair.first,
+            pair.length,
+            pair.reduced_radius,
+            pair.reduced_modulus * scale,
+            self.rms_roughness(values),
+        )
 
     def rms_roughness(self, values: dict):
         """Rms height of both lines together, m."""

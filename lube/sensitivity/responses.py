@@ -83,8 +83,10 @@ def solve_responses(
     lines = deviating_lines(deviating.study.line_spec, waves)
     slips = np.unique(slips_of(deviating, points))
     slips = xr.DataArray(slips, {"slide_to_roll_ratio": slips}, ["slide_to_roll_ratio"])
-    given = profiles, xr.Dataset(contact), slips, lines, threads
-    tables = [KINDS[name][1](*given) for name in contact_models]
+    tables = [
+        KINDS[name][1](profiles, xr.Dataset(contact), slips, lines, threads)
+        for name in contact_models
+    ]
     return xr.merge(tables, join="exact").assign(contact_half_width=half_width)
 
 

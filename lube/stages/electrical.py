@@ -62,8 +62,10 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     limits = [closed * (1.0 + deviation) for deviation in deviations]
     table |= values_with_limits("closed_resistance", limits)
     capacitance = table["capacitance"] + table["surrounding_capacitance"]
-    circuit = share, table["closed_resistance"].fillna(1.0), capacitance
-    phases = [np.degrees(_phase(rig, *circuit)) for rig in rigs.values()]
+    phases = [
+        np.degrees(_phase(rig, share, table["closed_resistance"].fillna(1.0), capacitance))
+        for rig in rigs.values()
+    ]
     table["impedance_phase"] = xr.concat(phases, "rig", coords="minimal", compat="override")
     found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(six_digits)
     found = found.merge(readings, join="exact")
@@ -88,8 +90,13 @@ def _capacitances(study, film):
     inverse = [electrical.mean_inverse_gap(*gap, layer).mean() for gap in _gaps(study, film)]
     read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
     contact = film["contact_half_width"], study.rollers.length, rig.oil_permittivity
-    edge = film["contact_half_width"], film["reduced_radius"], *contact[1:]
-    around = xr.apply_ufunc(electrical.surrounding_capacitance, mean_gap, *edge)
+    around = xr.apply_ufunc(
+        electrical.surrounding_capacitance,
+        mean_gap,
+        film["contact_half_width"],
+        film["reduced_radius"],
+        *contact[1:],
+    )
     return {
         "film_thickness": mean_gap,
         "capacitance": electrical.film_capacitance(read, *contact),

@@ -17,8 +17,15 @@ from lube.types import Datasets
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film.nc``; see `lube.stages`."""
     oil, rollers, grid = inputs["lubricant"], study.rough_rollers, study.operating_grid
-    levels = grid.force, grid.speed, study.film_formulas
-    return film_table(oil, rollers, *levels, slide_to_roll_ratio=study.slips, **study.film_model)
+    return film_table(
+        oil,
+        rollers,
+        grid.force,
+        grid.speed,
+        study.film_formulas,
+        slide_to_roll_ratio=study.slips,
+        **study.film_model,
+    )
 
 
 def film_table(
@@ -102,8 +109,19 @@ def film_table(
     levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
     forces, speeds, slips = (axes[name] for name in levels)
-    options = with_shape, slips, inlet_shear_heating, inlet_meniscus, answered_lines
-    asperities = {"rough_surfaces": rough_surfaces, "load_sharing": load_sharing}
-    table = film_at(lubricant, rollers, forces, speeds, formulas, *options, **asperities)
+    table = film_at(
+        lubricant,
+        rollers,
+        forces,
+        speeds,
+        formulas,
+        with_shape,
+        slips,
+        inlet_shear_heating,
+        inlet_meniscus,
+        answered_lines,
+        rough_surfaces=rough_surfaces,
+        load_sharing=load_sharing,
+    )
     dims = CONTACT_DIMS[0], "roller", *CONTACT_DIMS[1:]
     return label(table.transpose(*dims, ..., missing_dims="ignore"), "film")

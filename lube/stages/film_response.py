@@ -14,8 +14,14 @@ from lube.types import Datasets
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film_response.nc``; see `lube.stages`."""
-    given = inputs["lubricant"], inputs["film"], study.rough_rollers, study.line_spec
-    return film_responses(*given, threads=threads, **study.inlet_model)
+    return film_responses(
+        inputs["lubricant"],
+        inputs["film"],
+        study.rough_rollers,
+        study.line_spec,
+        threads=threads,
+        **study.inlet_model,
+    )
 
 
 def film_responses(
@@ -48,9 +54,18 @@ def film_responses(
         Where the film did not converge, the response is NaN and the log says so.
     """
     if "response_real" not in film:
-        levels = film["force"], film["speed"], ["computed"], False, film["slide_to_roll_ratio"]
-        corrections = inlet_shear_heating, inlet_meniscus
-        film = film_at(lubricant, rollers, *levels, *corrections, spec, threads=threads)
+        film = film_at(
+            lubricant,
+            rollers,
+            film["force"],
+            film["speed"],
+            ["computed"],
+            slide_to_roll_ratio=film["slide_to_roll_ratio"],
+            inlet_shear_heating=inlet_shear_heating,
+            inlet_meniscus=inlet_meniscus,
+            answered_lines=spec,
+            threads=threads,
+        )
     table = film[[*VARIABLES, "contact_half_width"]].rename(response_position="film_position")
     central = table.sel(film_position=0.0, drop=True)
     table["amplitude_ratio"] = np.abs(central["response_real"] + 1j * central["response_imaginary"])

@@ -35,8 +35,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     pressure = (0.5 * point["hertz_pressure"] / point["reduced_modulus"]).item()
     thickness = asymptotic_gap(point["moes_load"].item(), point["moes_material"].item())
     models = INLET_HEATING[1:]
-    plane = LOADINGS[:, None], SLIPS, pressure, thickness
-    factors = [heating_factor(model, *plane) for model in models]
+    factors = [
+        heating_factor(model, LOADINGS[:, None], SLIPS, pressure, thickness) for model in models
+    ]
     oil = [lubricant[name] for name in ("dynamic_viscosity", "temperature_viscosity_coefficient")]
     loading = thermal_loading(*oil, film["entrainment_speed"], lubricant["thermal_conductivity"])
     values = {

@@ -40,9 +40,15 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = at_slip(with_surface_responses(inputs), slip).isel(film_formula=0, drop=True)
     film = film.transpose(*POINT_DIMS, ...)
     threshold, reading = _reading(inputs["electrical"], study)
-    point = inputs["lubricant"], study.rough_rollers, film["force"], film["speed"]
     options = study.inlet_model | {"slide_to_roll_ratio": slip}
-    by_coefficient = planning.film_by_coefficient(*point, study.film_formulas[0], **options)
+    by_coefficient = planning.film_by_coefficient(
+        inputs["lubricant"],
+        study.rough_rollers,
+        film["force"],
+        film["speed"],
+        study.film_formulas[0],
+        **options,
+    )
     by_coefficient = by_coefficient.transpose(*POINT_DIMS).values.ravel()
     unknown = {"half_width": dict.fromkeys(study.contact_model, 0.0)}
     if "sensitivity" in inputs:
@@ -91,8 +97,9 @@ def _of_lines(study, inputs, film, slip, reading, threads):
 def _of_surfaces(study, inputs, film, slip, reading, threads):
     """As `_of_lines`, of surfaces; the sample size is that of a revolution of pure rolling."""
     areal = inputs["areal"].sel(slide_to_roll_ratio=slip, drop=True).isel(film_formula=0, drop=True)
-    records = slip, TURNS, study.rig.drift
-    found, size, ratios = planning.on_surfaces(RoughPair.of(study), film, areal, *records, threads)
+    found, size, ratios = planning.on_surfaces(
+        RoughPair.of(study), film, areal, slip, TURNS, study.rig.drift, threads
+    )
     return found, size, ratios, planning.reading_of_surfaces(reading, found.probability), SURFACES
 
 

@@ -17,8 +17,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     answered = [model for model in models(deviating) if model.gap.is_answered]
     units, points = zip(*(design(deviating, model) for model in answered), strict=True)
     contact_models = dict.fromkeys(model.contact_model for model in answered)
-    runs = np.concatenate(units), xr.concat(points, "run")
-    table = solve_responses(deviating, contact_models, *runs, threads)
+    table = solve_responses(
+        deviating, contact_models, np.concatenate(units), xr.concat(points, "run"), threads
+    )
     names = [f"{KINDS[one][0]}_{part}" for one in contact_models for part in ("real", "imaginary")]
     dims = FILES["sensitivity_responses"]["surface_response_real"].dims
     table = table[[*names, "contact_half_width"]].transpose(*dims, missing_dims="ignore")

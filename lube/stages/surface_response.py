@@ -11,9 +11,17 @@ from lube.types import Datasets
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``surface_response.nc``; see `lube.stages`."""
     film = inputs["film"]
-    levels = film["force"], film["speed"], ["computed"], False, film["slide_to_roll_ratio"]
-    options = study.inlet_model | {"answered_surfaces": study.line_spec, "threads": threads}
-    table = film_at(inputs["lubricant"], study.rough_rollers, *levels, **options)
+    table = film_at(
+        inputs["lubricant"],
+        study.rough_rollers,
+        film["force"],
+        film["speed"],
+        ["computed"],
+        slide_to_roll_ratio=film["slide_to_roll_ratio"],
+        answered_surfaces=study.line_spec,
+        threads=threads,
+        **study.inlet_model,
+    )
     table = table.rename(response_position="film_position")
     variables = FILES["surface_response"]
     dims = variables["surface_response_real"].dims

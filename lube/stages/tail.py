@@ -409,8 +409,11 @@ def _asymptotes(spec, film, boundary_layer, gap):
     """
     if gap.is_answered:  # the moments change along the window
         return dict.fromkeys(_ASYMPTOTES, xr.full_like(film["film_thickness"], np.nan))
-    strength = boundary_layer.critical_thickness, boundary_layer.shear_strength
-    curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
+    curvature = breaking_curvature(
+        film["reduced_modulus"].item(),
+        boundary_layer.critical_thickness,
+        boundary_layer.shear_strength,
+    )
     moments = pair_moments(spec)
     films = shaped_films(film) if gap.has_shape else film["film_thickness"]
     rows = films.values.reshape(-1, films.shape[-1])

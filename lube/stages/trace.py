@@ -144,8 +144,9 @@ def contact_window(
     film, half_window = whole_numbers(point["film_thickness"], reach or widest, grid)
     window = np.arange(-half_window, half_window + 1)
     if gap.has_shape:
-        profile = point["film_position"].values, point["film_profile"].values
-        film = film_on_points(*profile, half_width, window, grid)
+        film = film_on_points(
+            point["film_position"].values, point["film_profile"].values, half_width, window, grid
+        )
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
     pair = line_pair(lines, REALISATION)
     if gap.is_flattened:

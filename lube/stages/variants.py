@@ -137,10 +137,16 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 def _film_by(study, inputs, formula, shape):
     """Film by another formula, or that shares the load by another shape."""
-    levels = study.rough_rollers, inputs["film"]["force"], inputs["film"]["speed"], [formula]
     changed = {"with_shape": shape == "computed", "answered_lines": None}
     changed["slide_to_roll_ratio"] = rolling(study.slips)
-    film = film_at(inputs["lubricant"], *levels, **study.film_model | changed)
+    film = film_at(
+        inputs["lubricant"],
+        study.rough_rollers,
+        inputs["film"]["force"],
+        inputs["film"]["speed"],
+        [formula],
+        **study.film_model | changed,
+    )
     return film[["film_thickness", "formula_place"]].isel(film_formula=0)
 
 
@@ -187,8 +193,10 @@ def _on_lines(own, films, sampled, study, threads):
 
 def _sampled(variants, windows, study, threads):
     """Probabilities by importance sampling."""
-    pairs = study.line_spec, study.seed, PAIRS, threads
-    values = np.stack([windows[each].on_pairs(*pairs) for each in variants], axis=1)
+    values = np.stack(
+        [windows[each].on_pairs(study.line_spec, study.seed, PAIRS, threads) for each in variants],
+        axis=1,
+    )
     mean, lower, upper = confidence.mean_interval(values, 1.0)
     upper[:, 1] = confidence.breakthrough_limit(upper[:, 1], upper[:, 0], WINDOWS * PAIRS)
     return _with_limits(variants, values, (mean, lower, upper))

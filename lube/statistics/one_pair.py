@@ -274,8 +274,9 @@ def prediction_limits(
     never_met = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / (sample_size * realisations))
     likely = np.clip(mean, never_met, 1.0 - never_met)
     likely = np.where((mean == 0.0) | (mean == 1.0), likely, mean)
-    known = sample_size, ratio, realisations, noise, mean_error
-    half = quantile(realisations) * standard_error(likely, *known)
+    half = quantile(realisations) * standard_error(
+        likely, sample_size, ratio, realisations, noise, mean_error
+    )
     lower = np.where(mean == 0.0, 0.0, np.maximum(likely - half, 0.0))
     upper = np.where(mean == 1.0, 1.0, np.minimum(likely + half, 1.0))
     return lower, upper

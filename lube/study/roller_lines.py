@@ -101,8 +101,10 @@ def _rough_line(rollers, roughness, name, rms, spacing, width):
     else:
         cutoffs = own.long_cutoff, own.short_cutoff
         _check_cutoffs(cutoffs, longest, shortest, key)
-        beyond = own.hurst_exponent, longest, shortest, cutoffs, own.roll_off_wavelength
-        shape = {"rms_height": rms * beyond_cutoffs(*beyond), "hurst_exponent": own.hurst_exponent}
+        kept = beyond_cutoffs(
+            own.hurst_exponent, longest, shortest, cutoffs, own.roll_off_wavelength
+        )
+        shape = {"rms_height": rms * kept, "hurst_exponent": own.hurst_exponent}
         shape |= {"long_cutoff": cutoffs[0], "short_cutoff": cutoffs[1]} | _lay(own, key)
     _check_perimeter(points * spacing, longest * shape.get("lay_ratio", 1.0), shortest, name)
     _check_height_step(shape["rms_height"], roughness.height_step, name, roller)

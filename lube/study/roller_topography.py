@@ -113,6 +113,7 @@ class RollerTopography(StrictModel):
         if length < width:
             needed = f"need one longer than the contact is wide, {width:.3g} m"
             raise DataError(f"{self.file}: got a profile of {length:.3g} m, {needed}")
-        line = points, spacing, band[1], height_step
-        rms, heights = topography_lines.measured_line(self.use, self._measured, *line)
+        rms, heights = topography_lines.measured_line(
+            self.use, self._measured, points, spacing, band[1], height_step
+        )
         return {"rms_height": rms, "heights": heights}

@@ -122,8 +122,9 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
         density = density * transfer
     length = min(used_directions(surface.lengths, settings))
     limits = min(2.0 * np.pi * LEAST_WAVES / length, wave_vector[0]), 2.0 * np.pi / shortest
-    kind = of_surface, limits, *lay
-    return LineSpectrum(surface.name, wave_vector, density, estimates, transfer, *kind)
+    return LineSpectrum(
+        surface.name, wave_vector, density, estimates, transfer, of_surface, limits, *lay
+    )
 
 
 def profile_density(heights: Array, spacing: float) -> Pair:

@@ -191,8 +191,11 @@ def rare_contact(
         touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail, drawn.rms)
         shape = np.full(width, film, np.float32)
         windows[:, i] = drawn.windows(shape, touching, own) * (width * np.exp(log_tail))
-        known = drawn.lines, drawn.places, drawn.covariances, touching[1][:RUNS]
-        runs[:, i] = touching_runs(*known, film, width, own) * (np.exp(log_tail) / RUNS)
+        heights = touching[1][:RUNS]
+        found = touching_runs(
+            drawn.lines, drawn.places, drawn.covariances, heights, film, width, own
+        )
+        runs[:, i] = found * (np.exp(log_tail) / RUNS)
     return windows, runs
 
 

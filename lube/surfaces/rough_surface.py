@@ -308,8 +308,9 @@ def rough_surface(
     is_mirrored = all(angle % 90.0 == 0.0 or ratio == 1.0 for ratio, angle in lays)
     mixed = 0.0 if is_mirrored else np.sum(variances * number * along * down)
     diagonal = -int(np.sign(mixed))
-    values = rms, first, variances, curvatures, is_mirrored, diagonal
-    return Surface(spacing, points, coarse, *values)
+    return Surface(
+        spacing, points, coarse, rms, first, variances, curvatures, is_mirrored, diagonal
+    )
 
 
 @functools.lru_cache(maxsize=2)

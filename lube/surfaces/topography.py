@@ -150,8 +150,10 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
         # The drift is a straight line.
         heights = heights + step_at_join(heights) * np.linspace(-0.5, 0.5, heights.size)
     spacing = used_directions(topography.spacing, settings)
-    cutoffs = settings.long_cutoff, settings.short_cutoff
-    return replace(topography, heights=gaussian_filter(heights, spacing, *cutoffs, settings.closed))
+    filtered = gaussian_filter(
+        heights, spacing, settings.long_cutoff, settings.short_cutoff, settings.closed
+    )
+    return replace(topography, heights=filtered)
 
 
 def used_directions(sides: tuple[float, ...], settings: Preparation) -> tuple[float, ...]:

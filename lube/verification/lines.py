@@ -152,8 +152,9 @@ def line_checks(study: Study, found: Curves, threads: int | None) -> dict[str, f
 
 def _curvature_limit(study):
     layer = study.boundary_layer
-    strengths = layer.critical_thickness, layer.shear_strength
-    return breaking_curvature(study.rollers.reduced_modulus, *strengths)
+    return breaking_curvature(
+        study.rollers.reduced_modulus, layer.critical_thickness, layer.shear_strength
+    )
 
 
 def _crossings(spec, pairs):
@@ -260,8 +261,13 @@ def scaled_checks(study: Study, lubricant: xr.Dataset) -> dict[str, float]:
     oil, formula = lubricant.isel(lubricant=0), study.film_formulas[:1]
     own = film_at(oil.isel(temperature=-1), rollers, force, speed, formula)
     for _ in range(SEARCHES):
-        others = _other_rollers(rollers), force * LONGER / LARGER, speed
-        film = film_at(oil.isel(temperature=0), *others, formula)
+        film = film_at(
+            oil.isel(temperature=0),
+            _other_rollers(rollers),
+            force * LONGER / LARGER,
+            speed,
+            formula,
+        )
         thicker = own["film_thickness"] / film["film_thickness"]
         speed = speed * thicker.isel(film_formula=0, drop=True) ** 1.25  # films as speed^0.6 to 1
     known = np.isfinite(thicker.values[0])

@@ -55,9 +55,13 @@ def test_a_study_is_archived_with_all_its_files_and_loads_from_there(own, archiv
     contents = contents_of(own, archive)
     written = {name for name in contents if name.startswith(("study/", "lubricants/"))}
     assert written == {
-        *("study/studies/study.yaml", "study/studies/records/list.csv", "study/oils/mine.yaml"),
-        *("study/config/smoke.yaml", "study/config/paper.yaml"),
-        *("lubricants/mine.yaml", "lubricants/mobilgear-shc-xmp-320.yaml"),
+        "study/studies/study.yaml",
+        "study/studies/records/list.csv",
+        "study/oils/mine.yaml",
+        "study/config/smoke.yaml",
+        "study/config/paper.yaml",
+        "lubricants/mine.yaml",
+        "lubricants/mobilgear-shc-xmp-320.yaml",
     }
     for name in written:
         (tmp_path / "archive" / name).parent.mkdir(parents=True, exist_ok=True)

@@ -72,10 +72,29 @@ def test_it_has_the_numbers_of_the_rollers_of_a_notebook_to_the_last_bit(new):
 def test_with_all_options_each_value_arrives_in_its_place(new, tmp_path):
     (tmp_path / "rig").touch()
     code, said = new(
-        *("studies/mine.yaml", "--radius", "50", "30", "mm", "--roughness", "0.3 um"),
-        *("--force", "400", "800", "N", "--speed", "1.5,", "2", "Hz"),
-        *("--temperature", "320 340 K", "--oil", "n-dodecane"),
-        *("--realisations", "8", "--records", "rig/records.csv"),
+        "studies/mine.yaml",
+        "--radius",
+        "50",
+        "30",
+        "mm",
+        "--roughness",
+        "0.3 um",
+        "--force",
+        "400",
+        "800",
+        "N",
+        "--speed",
+        "1.5,",
+        "2",
+        "Hz",
+        "--temperature",
+        "320 340 K",
+        "--oil",
+        "n-dodecane",
+        "--realisations",
+        "8",
+        "--records",
+        "rig/records.csv",
     )
     assert code == 2 and "rig/records.csv: cannot be written" in said
     assert not list(tmp_path.glob("**/*.*"))

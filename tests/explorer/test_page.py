@@ -435,8 +435,11 @@ def test_a_study_of_one_point_has_no_control_and_no_map(visit, explored, tmp_pat
     assert page.inner_text("h1") == TITLE
     assert page.locator("[id^=control-]").count() == 0
     assert page.locator(".fixed").all_inner_texts() == [
-        *("Oil: mobilgear-shc-xmp-320", "Film formula: paper"),
-        *("Force: 800 N", "Speed: 100 r/min", "Temperature: 40 °C"),
+        "Oil: mobilgear-shc-xmp-320",
+        "Film formula: paper",
+        "Force: 800 N",
+        "Speed: 100 r/min",
+        "Temperature: 40 °C",
     ]
     assert page.locator("#figure-map").count() == 0
     assert "record" not in page.inner_text(".key")

@@ -17,9 +17,16 @@ def test_jobs_submitted_by_a_script_in_other_batches_make_the_same_bytes(smoke):
     submit.chmod(0o755)
     with smoke.clean_slate():
         said = smoke.run(
-            *("--executor", "cluster-generic", "--jobs", "2"),
-            *("--cluster-generic-submit-cmd", str(submit), "--seconds-between-status-checks", "1"),
-            *("results/smoke/contact.nc", "results/smoke/trace.nc"),
+            "--executor",
+            "cluster-generic",
+            "--jobs",
+            "2",
+            "--cluster-generic-submit-cmd",
+            str(submit),
+            "--seconds-between-status-checks",
+            "1",
+            "results/smoke/contact.nc",
+            "results/smoke/trace.nc",
             study=study,
         )
         away = smoke.products()

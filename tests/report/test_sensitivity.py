@@ -15,7 +15,9 @@ def test_what_matters_most_comes_first_with_its_range_and_source():
     lines = rests_on(STUDY, dataset()).strip().splitlines()
     rows = [line for line in lines if line.startswith("|")]
     assert [row.split(" | ")[0] for row in rows[2:]] == [
-        *("| contact model", "| temperature", "| resistivity"),
+        "| contact model",
+        "| temperature",
+        "| resistivity",
         "| probability, 5 to 95 % of the samples",
     ]
     assert rows[2] == "| contact model | line | line, surface | the model | 40 | 30 | 20 |"

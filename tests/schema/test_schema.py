@@ -59,8 +59,13 @@ def test_label_writes_what_check_asks_for_in_place_of_other_attributes():
 
 
 CONTENTS = {
-    *("coordinate", "modelResult", "qualityInformation"),
-    *("auxiliaryInformation", "referenceInformation", "physicalMeasurement", "record"),
+    "coordinate",
+    "modelResult",
+    "qualityInformation",
+    "auxiliaryInformation",
+    "referenceInformation",
+    "physicalMeasurement",
+    "record",
 }
 
 

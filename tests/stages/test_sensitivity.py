@@ -176,7 +176,8 @@ def test_the_band_holds_its_median_and_is_as_wide_as_the_deviation_says(result):
 
 def test_surrogates_miss_runs_that_they_have_not_seen_by_little(result):
     assert result["surrogate_model"].values.tolist() == [
-        *("line, flat, none", "line, computed, none")
+        "line, flat, none",
+        "line, computed, none",
     ]
     assert (result["surrogate_error"] < 0.15).all()
     assert (result["relative_surrogate_error"] < 0.15).all()

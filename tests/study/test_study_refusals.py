@@ -148,8 +148,15 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
 
 
 WITH_DEFAULT = (
-    *("about", "rig", "experiment", "film_shape", "inlet_shear_heating", "inlet_meniscus"),
-    *("roughness_deformation", "contact_model", "uncertainty"),
+    "about",
+    "rig",
+    "experiment",
+    "film_shape",
+    "inlet_shear_heating",
+    "inlet_meniscus",
+    "roughness_deformation",
+    "contact_model",
+    "uncertainty",
 )
 
 

@@ -21,7 +21,12 @@ def with_section(tmp_path, **section):
 def test_the_papers_study_has_a_range_with_a_source_for_everything_it_leaves_open():
     factors = load_study(PAPER).uncertainty.factors()
     assert {factor.group for factor in factors} == {
-        *("oil", "conditions", "surface", "layer", "film", "contact model")
+        "oil",
+        "conditions",
+        "surface",
+        "layer",
+        "film",
+        "contact model",
     }
     assert len(factors) >= 12
     assert all(factor.given.source for factor in factors)
