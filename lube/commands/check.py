@@ -55,15 +55,16 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
     model = study.film_model | {"answered_lines": None}
-    levels = grid.force, grid.speed, study.film_formulas[:1]
-    film = film_table(oil, study.rough_rollers, *levels, slide_to_roll_ratio=study.slips, **model)
-    question = film, study.line_spec, study.rough_rollers
+    spec, rollers, formulas = study.line_spec, study.rough_rollers, study.film_formulas[:1]
+    film = film_table(
+        oil, rollers, grid.force, grid.speed, formulas, slide_to_roll_ratio=study.slips, **model
+    )
     summary = render(
         "check.txt",
         study=study,
         points=points,
         factors=[count(number, spoken(name)) for name, number in counts.items() if number > 1],
-        films=overview(*question),
+        films=overview(film, spec, rollers),
         usable=usable,
         total=total,
         folder=folder,
@@ -71,7 +72,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
         cores=os.cpu_count(),
         last_run=_last_run(folder),
         notes=[
-            *remarks(*question, study.contact_model),
+            *remarks(film, spec, rollers, study.contact_model),
             *_own_remarks(path, study, arguments["changes"]),
         ],
     )

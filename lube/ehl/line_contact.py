@@ -355,22 +355,29 @@ def one_blas_thread() -> AbstractContextManager:
 _libraries = cache(ThreadpoolController)
 
 
-def profiles_of(*groups: Values, meniscus: Values | None = None) -> Array:
+def profiles_of(
+    load: Values,
+    speed: Values,
+    material: Values,
+    viscosity: Values,
+    film_modulus: Values,
+    meniscus: Values | None = None,
+) -> Array:
     """Solve for the films of many contacts.
 
     Parameters
     ----------
-    *groups : float or numpy.ndarray
-        The arguments of `LineContact`; they broadcast.
+    load, speed, material, viscosity, film_modulus : float or numpy.ndarray
+        As in `LineContact`; they broadcast.
     meniscus : float or numpy.ndarray, optional
         Distance over R*, from the line of centres, at which the oil begins; it broadcasts with the
-        groups. By default it is far away.
+        others. By default it is far away.
 
     Returns
     -------
     numpy.ndarray of object
-        A `FilmProfile` for each contact. It is None where a group is NaN, or where the film did not
-        converge, which is logged.
+        A `FilmProfile` for each contact. It is None where a number is NaN, or where the film did
+        not converge, which is logged.
     """
 
     def solved(*numbers, meniscus):
@@ -383,7 +390,8 @@ def profiles_of(*groups: Values, meniscus: Values | None = None) -> Array:
             log.warning("%s", error)
             return None
 
-    return np.vectorize(solved, otypes=[object])(*groups, meniscus=meniscus)
+    solved_each = np.vectorize(solved, otypes=[object])
+    return solved_each(load, speed, material, viscosity, film_modulus, meniscus=meniscus)
 
 
 def _settle(contact, nodes, pressure, film, steps, is_damped=True):

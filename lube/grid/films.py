@@ -247,12 +247,16 @@ class FilmGroups:
     @cached_property
     def profiles(self) -> xr.DataArray:
         """Profile of each film, solved numerically; None where it did not converge."""
-
-        def solved(*groups):
-            return profiles_of(*groups[:-1], meniscus=groups[-1])
-
-        groups = self.load, self.speed, self.material, self.viscosity, self.film_modulus
-        return xr.apply_ufunc(solved, *groups, self.meniscus, join="exact")
+        return xr.apply_ufunc(
+            profiles_of,
+            self.load,
+            self.speed,
+            self.material,
+            self.viscosity,
+            self.film_modulus,
+            self.meniscus,
+            join="exact",
+        )
 
     @cached_property
     def central_film(self) -> xr.DataArray:

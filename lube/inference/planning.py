@@ -116,15 +116,17 @@ def line_ratios(
         Variance of a record's share over that of a realisation.
     """
     spec = pair.spec
-    reach = spec.longest_wavelength / spec.spacing
-    motion = speed_ratios(slide_to_roll_ratio), spec.points, reach
+    reach, speeds = spec.longest_wavelength / spec.spacing, speed_ratios(slide_to_roll_ratio)
     windows = ContactWindows(spec, film, pair.layer, Gap(pair.gap.film_shape))
     persistent = np.ones((2, windows.size))
-    if distinct_alignments(max(turns), *motion) > 1:
+    if distinct_alignments(max(turns), speeds, spec.points, reach) > 1:
         persistent = persistent_share(*crosswise(windows, spec, pair.seed, LINES))
         persistent = np.where(np.isfinite(persistent), persistent, 1.0)
     each = known, *turns
-    by_turns = [[scatter_ratio(one, *motion, part, drift) for part in persistent.T] for one in each]
+    by_turns = [
+        [scatter_ratio(one, speeds, spec.points, reach, part, drift) for part in persistent.T]
+        for one in each
+    ]
     return np.array(by_turns[1:]) / by_turns[0]
 
 

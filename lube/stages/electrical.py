@@ -89,18 +89,22 @@ def _capacitances(study, film):
     mean_gap = film["film_thickness"]
     inverse = [electrical.mean_inverse_gap(*gap, layer).mean() for gap in _gaps(study, film)]
     read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
-    contact = film["contact_half_width"], study.rollers.length, rig.oil_permittivity
+    half_width, length = film["contact_half_width"], study.rollers.length
+    permittivity = rig.oil_permittivity
     around = xr.apply_ufunc(
         electrical.surrounding_capacitance,
         mean_gap,
-        film["contact_half_width"],
+        half_width,
         film["reduced_radius"],
-        *contact[1:],
+        length,
+        permittivity,
     )
     return {
         "film_thickness": mean_gap,
-        "capacitance": electrical.film_capacitance(read, *contact),
-        "plate_capacitance": electrical.film_capacitance(mean_gap, *contact),
+        "capacitance": electrical.film_capacitance(read, half_width, length, permittivity),
+        "plate_capacitance": electrical.film_capacitance(
+            mean_gap, half_width, length, permittivity
+        ),
         "surrounding_capacitance": around,
         "capacitance_film": read,
     }

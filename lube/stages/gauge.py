@@ -173,11 +173,11 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         films = np.log(comparison["lambda_ratio"].values[0])
         ratios, noise = comparison["scatter_ratio"].values[0], comparison["share_error"].values
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
-            given = curve, film, members[:, record]
+            shares = members[:, record]
             if is_line:
-                held, closed = _leave_one_out(*given)
+                held, closed = _leave_one_out(curve, film, shares)
             else:
-                held, closed = _of_drawn(*given, ratios[record], noise[record])
+                held, closed = _of_drawn(curve, film, shares, ratios[record], noise[record])
             cases = held, held[closed], held[~closed], closed
             coverage[:, record] = [mean_or_nan(each) for each in cases]
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")

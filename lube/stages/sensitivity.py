@@ -33,12 +33,12 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     with one_blas_thread():  # the number of threads would change the last digits
         predictor = Predictor.of(deviating, runs, inputs.get("sensitivity_responses"))
-        sampled = names, partial(predictor.log_probability, threads=threads), study.seed
-        single, values = sobol(*sampled)
-        grouped, _ = sobol(*sampled, of_factor)
+        predicted = partial(predictor.log_probability, threads=threads)
+        single, values = sobol(names, predicted, study.seed)
+        grouped, _ = sobol(names, predicted, study.seed, of_factor)
         choices = {one.name: len(one.given.choices) for one in factors if one.name in CHOICES}
         choices[SEED] = SEEDS
-        screened = morris(*sampled, choices)
+        screened = morris(names, predicted, study.seed, choices)
     table = _limits(single) | _limits(grouped, "group_") | _limits(screened)
     table["log_probability_deviation"] = values.std(axis=0)
     with np.errstate(invalid="ignore"):

@@ -6,6 +6,7 @@ interpolation.
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy
@@ -259,17 +260,18 @@ def film_interval(
     """
     if np.isnan(share) or curve.films.size < 2:
         return np.nan, np.nan, np.nan
-    known, limit = (share, ratio, realisations, noise), quantile(realisations)
-    films, distance = _distances(curve, curve.peak, curve.films.size - 1, *known)
+    limit = quantile(realisations)
+    distances = partial(_distances, share, ratio, realisations, noise, curve, curve.peak)
+    films, distance = distances(curve.films.size - 1)
     lower = np.interp(-limit, distance, films, left=-np.inf, right=films[-1])
     upper = np.interp(limit, distance, films, left=films[0], right=np.inf)
     if lower == -np.inf and curve.peak and distance[0] <= limit:
-        thinner, distance = _distances(curve, curve.peak, 0, *known)
+        thinner, distance = distances(0)
         lower = np.interp(limit, distance, thinner, right=-np.inf)
     return curve.film_at(share), lower, upper
 
 
-def _distances(curve, first, last, share, *known):
+def _distances(share, ratio, realisations, noise, curve, first, last):
     """Films, and the distances of a share from the curve there, in standard errors.
 
     The films go from one end to the other, both given as indices of the curve's levels. The
@@ -279,7 +281,7 @@ def _distances(curve, first, last, share, *known):
     films = np.interp(levels, np.arange(curve.films.size), curve.films)
     model = scipy.special.expit(curve.logit_at(films))
     sample_size = np.interp(films, curve.films, curve.sample_size)
-    error = standard_error(model, sample_size, *known)
+    error = standard_error(model, sample_size, ratio, realisations, noise)
     return films, np.maximum.accumulate((share - model) / error)
 
 

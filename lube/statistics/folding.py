@@ -83,8 +83,8 @@ def fold(shares: np.ndarray, interval: float, nominal_period: float) -> Fold:
     if not repeatability >= CLEAR:
         period = nominal_period
         repeatability = _repeatability(shares, interval, period)
-    folded = shares, interval, period
-    return Fold(period, repeatability, *_profile(*folded), _share_error(*folded))
+    profile = _profile(shares, interval, period)
+    return Fold(period, repeatability, *profile, _share_error(shares, interval, period))
 
 
 def refined_period(shares: np.ndarray, interval: float, nominal_period: float) -> float:

@@ -280,14 +280,23 @@ def rare_contact_under(
         # For another layout in memory Numba would compile the kernel once more.
         places, heights = map(np.ascontiguousarray, (pair.places[some], touching[1][some]))
         above = part.start + known[some], heights
-        around = answered, places, pair.covariances, above, film
-        around += window.covariances, window.shift
         # From one look to the next the surfaces shift against each other by a point at most.
         shift = np.abs(np.diff(speed_ratios[i])[:, 0])
         most = film.size // LOOKS
         strides = np.maximum(most / np.maximum(most * shift, 1.0), 1.0).astype(np.int64)
-        found = touching_runs_under(*around, speed_ratios[i], strides, own)
-        runs[:, i] = found * (expected / above[0].size)
+        found = touching_runs_under(
+            answered,
+            places,
+            pair.covariances,
+            above,
+            film,
+            window.covariances,
+            window.shift,
+            speed_ratios[i],
+            strides,
+            own,
+        )
+        runs[:, i] = found * (expected / heights.size)
     return shares, runs
 
 
@@ -347,10 +356,12 @@ class RarePair:
     def windows(self, film, touching, factor, surfaces=(), answers=()):
         """Mean weights of windows with contact and with a breakthrough."""
         starts = _spread(self.size, film.size, WINDOWS)
-        window = starts, _both_sides(self.correlation, film.size), touching, film
+        correlation = _both_sides(self.correlation, film.size)
         if any(surface.shapes.size for surface in surfaces):
-            return np.array(answered_windows(surfaces, *window, *answers, factor))
-        return np.array(touching_windows(self.line, *window, factor))
+            return np.array(
+                answered_windows(surfaces, starts, correlation, touching, film, *answers, factor)
+            )
+        return np.array(touching_windows(self.line, starts, correlation, touching, film, factor))
 
 
 def _both_sides(covariance, lags):
