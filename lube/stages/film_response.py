@@ -14,6 +14,8 @@ from lube.types import Datasets
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film_response.nc``; see `lube.stages`."""
+    if study.answered_lines is not None:
+        return _as_file(inputs["film"])  # it has the responses already
     return film_responses(
         inputs["lubricant"],
         inputs["film"],
@@ -40,8 +42,7 @@ def film_responses(
     lubricant, rollers, inlet_shear_heating, inlet_meniscus
         As in `lube.stages.film.film_table`.
     film : xarray.Dataset
-        A ``film`` dataset of these oils and rollers. If the study's films answer its roughness
-        lines, the responses are taken from it.
+        A ``film`` dataset of these oils and rollers.
     spec : LineSpec
         The roughness lines, for whose waves the response is computed.
     threads : int, optional
@@ -53,19 +54,23 @@ def film_responses(
         The ``film_response`` file of `lube.schema`, by `lube.grid.film_responses.wave_responses`.
         Where the film did not converge, the response is NaN and the log says so.
     """
-    if "response_real" not in film:
-        film = film_at(
-            lubricant,
-            rollers,
-            film["force"],
-            film["speed"],
-            ["computed"],
-            slide_to_roll_ratio=film["slide_to_roll_ratio"],
-            inlet_shear_heating=inlet_shear_heating,
-            inlet_meniscus=inlet_meniscus,
-            answered_lines=spec,
-            threads=threads,
-        )
+    solved = film_at(
+        lubricant,
+        rollers,
+        film["force"],
+        film["speed"],
+        ["computed"],
+        slide_to_roll_ratio=film["slide_to_roll_ratio"],
+        inlet_shear_heating=inlet_shear_heating,
+        inlet_meniscus=inlet_meniscus,
+        answered_lines=spec,
+        threads=threads,
+    )
+    return _as_file(solved)
+
+
+def _as_file(film):
+    """Responses of a film table, as they are stored."""
     table = film[[*VARIABLES, "contact_half_width"]].rename(response_position="film_position")
     central = table.sel(film_position=0.0, drop=True)
     table["amplitude_ratio"] = np.abs(central["response_real"] + 1j * central["response_imaginary"])

@@ -63,7 +63,8 @@ def test_windows_are_weighed_as_by_a_naive_implementation(film):
 
 def test_runs_are_weighed_as_by_a_naive_implementation():
     rng = np.random.default_rng(3)
-    lines, reach, film = [smooth_line(6000, rng) for _ in range(2)], 60, np.float32(3.5)
+    lines = smooth_line(6000, rng), smooth_line(6000, rng)
+    reach, film = 60, np.float32(3.5)
     width = 9
     covariances = tuple(correlation_of(reach + 1, width) / 2.0 for width in (4.0, 7.0))
     places = reach + 10 + np.arange(120) * 40
