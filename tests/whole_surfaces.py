@@ -3,6 +3,7 @@
 import functools
 
 import numpy as np
+import scipy
 import xarray as xr
 from scipy.interpolate import NdBSpline, make_interp_spline
 
@@ -118,3 +119,20 @@ class Filtered:
         along = self._changed[1][:, None]
         at = 2j * np.pi / self._surface.points[1] * along * (column + np.arange(width))
         return [response * np.where(along, 2.0, 1.0) * np.exp(at) for response in self._responses]
+
+
+def curved_more(added, spacing):
+    """Mean curvature of heights that change little from column to column, periodic in the rows."""
+    down = 2.0 * added - np.roll(added, 1, axis=0) - np.roll(added, -1, axis=0)
+    along = np.pad(-np.diff(added, 2, axis=1), ((0, 0), (1, 1)), mode="edge")
+    return 0.5 * (down / spacing[0] ** 2 + along / spacing[1] ** 2)
+
+
+def contacts_in(overlap, sharper, diagonal):
+    """Labels of contacts, then of each whether it breaks its boundary layer."""
+    neighbours = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
+    if diagonal:
+        neighbours[0, 1 - diagonal] = neighbours[2, 1 + diagonal] = 1
+    labels, count = scipy.ndimage.label(overlap > 0.0, neighbours)
+    summits = scipy.ndimage.maximum_position(overlap, labels, range(1, count + 1))
+    return labels, *(bool(sharper[summit]) for summit in summits)

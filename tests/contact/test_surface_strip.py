@@ -6,7 +6,14 @@ from functools import partial
 import numpy as np
 import pytest
 import scipy
-from whole_surfaces import Filtered, Unchanged, answered_strip, drawn_waves
+from whole_surfaces import (
+    Filtered,
+    Unchanged,
+    answered_strip,
+    contacts_in,
+    curved_more,
+    drawn_waves,
+)
 
 from lube.contact import surface_strip
 from lube.contact.rough_pair import RoughPair
@@ -166,23 +173,6 @@ def searched(surfaces, surface, films, sharp, generator):
         begun = np.delete(found, np.unique(labels[0])[1:] - 1)
         numbers.append(np.array([begun.size, np.sum(begun)]) * ROWS / (points[0] - 1))
     return np.stack([np.mean(shares, axis=0), np.mean(numbers, axis=0)])
-
-
-def curved_more(added, spacing):
-    """Mean curvature of heights that change little from column to column, periodic in the rows."""
-    down = 2.0 * added - np.roll(added, 1, axis=0) - np.roll(added, -1, axis=0)
-    along = np.pad(-np.diff(added, 2, axis=1), ((0, 0), (1, 1)), mode="edge")
-    return 0.5 * (down / spacing[0] ** 2 + along / spacing[1] ** 2)
-
-
-def contacts_in(overlap, sharper, diagonal):
-    """Labels of contacts, then of each whether it breaks its boundary layer."""
-    neighbours = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
-    if diagonal:
-        neighbours[0, 1 - diagonal] = neighbours[2, 1 + diagonal] = 1
-    labels, count = scipy.ndimage.label(overlap > 0.0, neighbours)
-    summits = scipy.ndimage.maximum_position(overlap, labels, range(1, count + 1))
-    return labels, *(bool(sharper[summit]) for summit in summits)
 
 
 def compare(spec, surfaces, surface, film, count):
