@@ -81,8 +81,8 @@ def _by_coefficient(study, lubricant, film, slip):
 def _expected(scatter, by_coefficient, unknown):
     """Slopes and half-widths of intervals at operating points, shape (..., P).
 
-    The slopes and the scatter are as from `_of_lines`. Half-widths have the standard deviations of
-    ln P by what is not known, by the name of the variable.
+    `scatter` is from `_of_lines` or `_of_surfaces`. `unknown` has, by the name of half-widths, the
+    standard deviation of ln P by all that is not known.
     """
     found, size, ratios, read, ensemble = scatter
     values = {
