@@ -83,24 +83,11 @@ def answered_windows(
     bands = [_bands(spec, roller, one, points) for roller, one in enumerate(answers)]
     ratio = rms_along(spec, points, before, answers)
     reach = math.ceil(spec.longest_wavelength / spec.spacing)
-    last = (max(points, reach) >> shift) + 2
-    lags = np.arange(last + 1) << shift
+    lags = np.arange((max(points, reach) >> shift) + 3) << shift
     most = 1 + max(len(filters) for _, _, filters in bands)
 
     def at_lags(roller):
-        power, by_point, filters = bands[roller]
-        both = np.concatenate([np.ones((1, power.size)), filters])
-        one, other = np.triu_indices(len(both))
-        products = power * both[one] * both[other].conj() / rms**2
-        phase = lags[:, None] * by_point
-        even, odd = np.cos(phase) @ products.real.T, np.sin(phase) @ products.imag.T
-        found = np.zeros((2 * last + 1, most, most))
-        # At the opposite lag the two lines change places.
-        for first, second, values in ((one, other, even - odd), (other, one, even + odd)):
-            found[last:, first, second] = values
-            found[last::-1, second, first] = values
-        found[:, 0, 0] = 0.0
-        return found
+        return _at_lags(lags, bands[roller], most, rms**2)
 
     with one_blas_thread():
         covariances = np.stack(_of_both(at_lags, spec, answers))
@@ -121,6 +108,23 @@ def answered_windows(
         return UnevenWindow(film[part], ratio[part], tuple(shapes), at_once, covariances, shift)
 
     return under
+
+
+def _at_lags(lags, bands, most, variance):
+    """Covariance of a line and its filtered lines at some lags and their opposites."""
+    power, by_point, filters = bands
+    both = np.concatenate([np.ones((1, power.size)), filters])
+    one, other = np.triu_indices(len(both))
+    products = power * both[one] * both[other].conj() / variance
+    phase, last = lags[:, None] * by_point, lags.size - 1
+    even, odd = np.cos(phase) @ products.real.T, np.sin(phase) @ products.imag.T
+    found = np.zeros((2 * last + 1, most, most))
+    # At the opposite lag the two lines change places.
+    for first, second, values in ((one, other, even - odd), (other, one, even + odd)):
+        found[last:, first, second] = values
+        found[last::-1, second, first] = values
+    found[:, 0, 0] = 0.0
+    return found
 
 
 def _of_both(function, spec, answers):

@@ -52,16 +52,12 @@ def revolution_contact(
         Shape (points, T), float32: summed diameters of contacts whose layer breaks, m, at T equal
         steps of a revolution; NaN where the film is not known.
     """
-    spec, strips = pair.spec, strip_films(pair, film)
+    strips = strip_films(pair, film)
     known = {point: strip for point, strip in enumerate(strips) if strip}
     if not known:
         return np.full((len(strips), 1), np.nan, np.float32)
-    wide = max(strip.width for strip in known.values())
-    surface = rough_surface(spec, wide, multiple=2**COARSEST if pair.gap.is_answered else 1)
-    sharp = mean_breaking_curvature(pair, film)
-    with one_blas_thread():
-        passages = {point: _Passage(strip, pair, surface, sharp) for point, strip in known.items()}
-    steps = round(spec.points[0] * spec.spacing / surface.spacing[1])
+    surface, passages = _passages(pair, film, known)
+    steps = round(pair.spec.points[0] * pair.spec.spacing / surface.spacing[1])
     rows = max(int(pair.length / surface.spacing[0]), 1)
     found = np.full((len(strips), steps), np.nan, np.float32)
     found[list(known)] = 0.0
@@ -74,11 +70,7 @@ def revolution_contact(
         sums = {point: np.zeros(passage.steps) for point, passage in passages.items()}
         for piece, begin in enumerate(range(0, rows, surface.points[0])):
             seeds = np.random.SeedSequence((pair.seed, number, column, piece))
-            heights, curvatures, waves = surface.draw(np.random.default_rng(seeds))
-            summits = connected_summits(heights, curvatures, surface.spacing, least)
-            inside = np.flatnonzero((summits.row < rows - begin) & (summits.column < columns))
-            by_column = inside[np.argsort(summits.column[inside], kind="stable")]
-            summits = _selected(summits, by_column)
+            summits, waves = _drawn(surface, seeds, least, rows - begin, columns)
             for point, passage in passages.items():
                 passage.add(summits, waves, sums[point])
         return sums
@@ -91,6 +83,25 @@ def revolution_contact(
                 first = passages[point].first_step - column * surface.points[1]
                 np.add.at(found[point], (first + np.arange(contact.size)) % steps, contact)
     return found
+
+
+def _passages(pair, film, known):
+    """Surface of which pieces are drawn, and their passages through known strips, by point."""
+    widest = max(strip.width for strip in known.values())
+    surface = rough_surface(pair.spec, widest, multiple=2**COARSEST if pair.gap.is_answered else 1)
+    sharp = mean_breaking_curvature(pair, film)
+    with one_blas_thread():
+        passages = {point: _Passage(strip, pair, surface, sharp) for point, strip in known.items()}
+    return surface, passages
+
+
+def _drawn(surface, seeds, lowest, rows, columns):
+    """Summits in the first rows and columns of a piece, column by column, and its waves."""
+    heights, curvatures, waves = surface.draw(np.random.default_rng(seeds))
+    summits = connected_summits(heights, curvatures, surface.spacing, lowest)
+    inside = np.flatnonzero((summits.row < rows) & (summits.column < columns))
+    by_column = inside[np.argsort(summits.column[inside], kind="stable")]
+    return _selected(summits, by_column), waves
 
 
 class _Passage:

@@ -139,18 +139,18 @@ def surface_contact(
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     check_surfaces(pair.spec, pair.length, 2.0 * half_width.max().item(), pair.gap)
     strips = strip_films(pair, film)
-    known = [point for point, strip in enumerate(strips) if strip is not None]
+    known = np.array([strip is not None for strip in strips])
     sharp = mean_breaking_curvature(pair, film) / weaker
-    sharp = np.broadcast_to(sharp, thickness.size)[known]
+    sharp = np.broadcast_to(sharp, thickness.size)
     values = {name: np.full(thickness.size, np.nan) for name in _VARIABLES}
     wanted = xr.DataArray(True) if wanted is None else wanted
-    wanted = wanted.broadcast_like(thickness).transpose(*thickness.dims).values.ravel()[known]
-    if known:
-        some = [strips[point] for point in known]
+    wanted = wanted.broadcast_like(thickness).transpose(*thickness.dims).values.ravel()
+    if known.any():
+        some = [strip for strip in strips if strip is not None]
         seeds = surface_seeds(pair.seed, SURFACES // fewer)
         changed = np.broadcast_to(thicker, thickness.size)[known].tolist()
         changed = [one.thicker(times) for one, times in zip(some, changed, strict=True)]
-        sampled = _contacts(pair, some, changed, sharp, wanted, seeds, threads)
+        sampled = _contacts(pair, some, changed, sharp[known], wanted[known], seeds, threads)
         for name, of_known in sampled.items():
             values[name][known] = of_known
     dims, shape = thickness.dims, thickness.shape
@@ -158,21 +158,20 @@ def surface_contact(
     found = xr.Dataset(values, thickness.coords)
     for name in (f"{_RATIO}{end}" for end in LIMITS):
         found[name] = found[name] / (2.0 * half_width)
-    looked_at = set(np.array(known, int)[wanted])
     points = thickness.copy(data=np.arange(thickness.size).reshape(shape))
-
-    limits = dict(zip(known, sharp, strict=True))
-
-    def both_widths(slip, point):
-        if point not in looked_at:
-            return np.nan, np.nan
-        strip, spec, length = strips[point], pair.spec, pair.length
-        of_broken = strip.breakthrough_width(spec, length, limits[point], slip)
-        return strip.passage_width(spec, length, slip), of_broken
-
-    both = np.vectorize(both_widths, otypes=[float, float])
-    widths = xr.apply_ufunc(both, slide_to_roll_ratio, points, output_core_dims=[(), ()])
+    widths = partial(_widths, pair, strips, sharp, known & wanted)
+    widths = np.vectorize(widths, otypes=[float, float])
+    widths = xr.apply_ufunc(widths, slide_to_roll_ratio, points, output_core_dims=[(), ()])
     return found.assign(dict(zip(("passage_width", "breakthrough_width"), widths, strict=True)))
+
+
+def _widths(pair, strips, sharp, wanted, slip, point):
+    """Passage width and breakthrough width at an operating point, m; NaN where not wanted."""
+    if not wanted[point]:
+        return np.nan, np.nan
+    strip, spec, length = strips[point], pair.spec, pair.length
+    of_broken = strip.breakthrough_width(spec, length, sharp[point], slip)
+    return strip.passage_width(spec, length, slip), of_broken
 
 
 def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:
@@ -241,16 +240,24 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
         holds = some[certain[some] & (found["breakthrough_probability"][some] < CERTAIN)]
         if holds.size:  # few strips do not tell how often the layer breaks
             sample(surface, holds, np.zeros(holds.size, bool))
+    shares = found["breakthrough_probability"]
+    found["pair_deviation"] = _pair_deviations(pair, strips, sharp, wanted, shares)
+    return found
+
+
+def _pair_deviations(pair, strips, sharp, wanted, shares):
+    """Scatter of a pair's share of breakthrough in a revolution of pure rolling, at each strip."""
+    spec, length, found = pair.spec, pair.length, np.full(len(strips), np.nan)
     perimeters = np.multiply(spec.points, spec.spacing)
     recurring = RecurringContacts(spec) if perimeters[0] != perimeters[1] else None
     for point in np.flatnonzero(wanted):
-        strip, share = strips[point], found["breakthrough_probability"][point]
+        strip, share = strips[point], shares[point]
         common = strip.common(spec, length)
-        found["pair_deviation"][point] = pair_deviation(share, *common, perimeters[0])
+        found[point] = pair_deviation(share, *common, perimeters[0])
         if recurring is not None:
             part = strip.breaking_part(spec, length, sharp[point])
             alone = recurring.at(strip.levels(spec).min(), part)
-            found["pair_deviation"][point] *= turn_ratio(share, *common, alone, perimeters) ** 0.5
+            found[point] *= turn_ratio(share, *common, alone, perimeters) ** 0.5
     return found
 
 
@@ -305,6 +312,8 @@ class _SampledStrip:
     film, sharp : numpy.ndarray
         Film, height steps, and breaking curvature, height steps per square metre, at the columns of
         the strip.
+    rms : numpy.ndarray
+        Rms height in the gap at the columns, height steps.
     count : int
         Number of strips.
     is_certain : bool
@@ -315,9 +324,46 @@ class _SampledStrip:
 
     film: Array
     sharp: Array
+    rms: Array
     count: int
     is_certain: bool
     answered: AnsweredStrip | None
+
+    @property
+    def fading(self):
+        """How fast points are chosen less often the more they overlap, at each column."""
+        return FADING * self.film / self.rms**2
+
+    def by_oil(self, waves, of_each):
+        """Find what the oil adds to drawn waves, given those of both surfaces and of each."""
+        if self.answered is None:
+            return NO_ANSWER
+        return self.answered.of_waves(of_each if len(self.answered.answers) > 1 else [waves])
+
+    def places(self, points, reach, chosen):
+        """Rows and columns of a surface of so many points at which chosen strips begin."""
+        shift, around = self.answered.shift if self.answered else 0, reach[1]
+        first_row, sizes = sum(reach), [one + 1 - (1 << shift) for one in points]
+        room = sizes[0] - first_row - around, sizes[1] - self.film.size + 1
+        row, column = ((room[side] * chosen[side]).astype(np.int64) for side in range(2))
+        # Strips begin at nodes.
+        return tuple(-(-place >> shift << shift) for place in (first_row + row, column))
+
+    def known_points(self, chosen):
+        """Columns and heights of points that touch, and the weight of each strip with one.
+
+        The density of a known height is that of all heights, times exp(-fading overlap): a normal
+        one with another mean.
+        """
+        film, rms = self.film, self.rms
+        log_tails = scipy.special.log_ndtr(-(1.0 + FADING) * film / rms)
+        log_chances = log_tails + FADING * (1.0 + 0.5 * FADING) * (film / rms) ** 2
+        likely = np.cumsum(np.exp(log_chances - log_chances.max()))
+        known = np.searchsorted(likely, chosen[1] * likely[-1])
+        heights = np.log(chosen[0]) + log_tails[known]
+        heights = -rms[known] * scipy.special.ndtri_exp(heights) - FADING * film[known]
+        weight = likely[-1] * np.exp(log_chances.max()) / self.count
+        return (known, heights.astype(np.float32)), weight
 
 
 def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
@@ -325,29 +371,33 @@ def _sampled(pair, surface, strips, counts, is_certain, sharp, seeds, threads):
     down, along = surface.spacing
     reach, step = _reach(pair.spec, down), pair.spec.height_step
     rows = sum(reach), reach[1]
-    films = [strip.films(along) / step for strip in strips]
-    each = zip(strips, sharp, strict=True)
-    limits = [strip.breaking_curvatures(along, own) / step for strip, own in each]
     answered = [strip.answered(surface) for strip in strips]
     with one_blas_thread():
         answered = [oil and oil.with_covariances(*rows, threads) for oil in answered]
-    each = zip(films, limits, counts.tolist(), is_certain.tolist(), answered, strict=True)
-    strips = [_SampledStrip(*one) for one in each]
-    covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
-
-    on_one_surface = partial(_on_one_surface, surface, covariances, strips, reach)
+    sampled = []
+    each = zip(strips, sharp, counts.tolist(), is_certain.tolist(), answered, strict=True)
+    for strip, own, count, certain, oil in each:
+        film, limit = strip.films(along) / step, strip.breaking_curvatures(along, own) / step
+        rms = np.broadcast_to(surface.rms * oil.rms if oil else surface.rms, film.shape)
+        sampled.append(_SampledStrip(film, limit, rms, count, certain, oil))
+    covariances = tuple(surface.covariances(*rows, max(one.film.size for one in sampled)))
+    on_one_surface = partial(_on_one_surface, surface, covariances, sampled, reach)
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
-    rows = max(int(pair.length / down), 1)
+    return _with_limits(first, numbers, max(int(pair.length / down), 1), along, counts * len(seeds))
+
+
+def _with_limits(first, numbers, rows, spacing, sampled):
+    """Variables and their limits from all surfaces, for a strip of so many rows."""
     results = {}
     for which, (name, of_contacts) in enumerate(_COUNTS.items()):
         # The limits are of the number of contacts: near 1 a probability scatters to one side.
         limits = jackknife_interval(first[:, :, which], partial(_up_to_certain, rows=rows))
         results |= values_with_limits(name, [-np.expm1(-each) for each in limits])
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
-    in_contact, broken = (mean_interval(along * numbers[:, :, which]) for which in (2, 3))
+    in_contact, broken = (mean_interval(spacing * numbers[:, :, which]) for which in (2, 3))
     results |= values_with_limits(_RATIO, broken)  # m, of the strip's width
-    contacts, sampled = results["contacts_upper"], counts * len(seeds)
+    contacts = results["contacts_upper"]
     for name in ("breakthroughs_upper", "breakthrough_probability_upper", f"{_RATIO}_upper"):
         of_contact = in_contact[2] if name == f"{_RATIO}_upper" else contacts
         results[name] = breakthrough_limit(results[name], of_contact, sampled)
@@ -375,56 +425,26 @@ def _reach(spec, spacing):
 def _on_one_surface(surface, covariances, strips, reach, seeds):
     """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 4)."""
     drawing, choosing = map(np.random.default_rng, seeds)
-    *fields, waves = surface.draw(drawing)
-    fields, chosen, both = tuple(fields), choosing.random((4, STRIPS)), []
+    heights, curvatures, waves = surface.draw(drawing)
+    fields, chosen, both = (heights, curvatures), choosing.random((4, STRIPS)), []
     if any(one.answered and len(one.answered.answers) > 1 for one in strips):
         both = surface.of_each(waves, drawing)
-    tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points[1], BLOCK), axis=1)
+    tops = np.maximum.reduceat(heights, np.arange(0, surface.points[1], BLOCK), axis=1)
     tops = tops, np.maximum.reduceat(tops, np.arange(0, surface.points[0], GROUP))
-    longest, around = reach
-    first, numbers = [], []
+    around, diagonal, first, numbers = reach[1], surface.diagonal, [], []
     for strip in strips:
-        film, count, answer = strip.film, strip.count, strip.answered
-        rms, shift, by_oil = surface.rms, 0, NO_ANSWER
-        if answer:
-            rms, shift = rms * answer.rms, answer.shift
-            by_oil = answer.of_waves(both if len(answer.answers) > 1 else [waves])
-        # Known points of strips, and the weight of each strip. The density of a known height is
-        # that of all heights, times exp(-fading overlap): a normal one with another mean.
-        rms = np.broadcast_to(rms, film.shape)
-        fading = FADING * film / rms**2
-        log_tails = scipy.special.log_ndtr(-(1.0 + FADING) * film / rms)
-        log_chances = log_tails + FADING * (1.0 + 0.5 * FADING) * (film / rms) ** 2
-        likely = np.cumsum(np.exp(log_chances - log_chances.max()))
-        known = np.searchsorted(likely, chosen[3, :count] * likely[-1])
-        heights = np.log(chosen[2, :count]) + log_tails[known]
-        heights = -rms[known] * scipy.special.ndtri_exp(heights) - FADING * film[known]
-        touching = known, heights.astype(np.float32)
-        weight = likely[-1] * np.exp(log_chances.max()) / count
-        first_row, sizes = longest + around, [one + 1 - (1 << shift) for one in surface.points]
-        room = sizes[0] - first_row - around, sizes[1] - film.size + 1
-        row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
-        # Strips begin at nodes.
-        places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))
-        diagonal = surface.diagonal
+        film, sharp, fading = strip.film, strip.sharp, strip.fading
+        own, oil = chosen[:, : strip.count], strip.by_oil(waves, both)
+        touching, weight = strip.known_points(own[2:])
+        places = strip.places(surface.points, reach, own[:2])
         *each, contacts = touching_strips(
-            fields,
-            tops,
-            covariances,
-            places,
-            touching,
-            film,
-            strip.sharp,
-            fading,
-            around,
-            by_oil,
-            diagonal,
+            fields, tops, covariances, places, touching, film, sharp, fading, around, oil, diagonal
         )
         first.append(weight * np.stack(each))
         if strip.is_certain:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
             contacts = contacts_per_row(
-                fields, covariances, some, film, strip.sharp, around, by_oil, diagonal
+                fields, covariances, some, film, sharp, around, oil, diagonal
             )
         else:
             contacts = weight * contacts

@@ -60,18 +60,10 @@ def surface_traces(
     smallest = tuple(smallest_contacts(spec, some).min(axis=0)) if some else UNRESOLVED
     multiple = 2**COARSEST if pair.gap.is_answered else 1
     surface = rough_surface(spec, wide, smallest, multiple=multiple)
-    down, along = surface.spacing
-    sharp = mean_breaking_curvature(pair, film)
+    sharp, each = mean_breaking_curvature(pair, film), enumerate(strips)
     with one_blas_thread():
-        known = {
-            point: (
-                (strip.films(along) / spec.height_step).astype(np.float32),
-                strip.breaking_curvatures(along, sharp) / spec.height_step,
-                strip.answered(surface),
-            )
-            for point, strip in enumerate(strips)
-            if strip
-        }
+        known = {point: _Passage(strip, pair, surface, sharp) for point, strip in each if strip}
+    down = surface.spacing[0]
     rows = max(int(pair.length / down), 1)
     begins = range(0, rows, surface.points[0])
     speeds = surface_speeds(1.0, slide_to_roll_ratio)
@@ -81,7 +73,7 @@ def surface_traces(
         seeds = np.random.SeedSequence((pair.seed, begin // surface.points[0])).spawn(9)[8]
         moving = _moving(surface, np.random.default_rng(seeds), speeds)
         count = min(rows - begin, surface.points[0])
-        return {point: _followed(surface, moving, *own, count, way) for point, own in known.items()}
+        return {point: strip.contacts(moving, count, way) for point, strip in known.items()}
 
     found = on_threads(of_piece, begins, threads, "trace of surfaces")
     return _table(dict(zip(begins, found, strict=True)), len(strips), way, rows, down)
@@ -99,62 +91,76 @@ def _moving(surface, generator, speeds):
     return both
 
 
-def _followed(surface, moving, films, sharp, answer, rows, way):
-    """Contacts of a piece at every step: their row, diameter, and whether they break."""
-    added = _added(moving, answer)
-    shift = answer.shift if answer else 0
-    columns, steps = np.arange(films.size), []
-    near = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
-    if surface.diagonal:
-        near[0, 1 - surface.diagonal] = near[2, 1 + surface.diagonal] = 1
-    for here in way:
-        overlap, curvature, by_oil = np.float32(0.0) - films, [], 0.0
-        for (speed, heights, curvatures, _), more in zip(moving, added, strict=True):
-            # Points of the surface that lie upstream come into the strip.
-            place = round(-here * speed / surface.spacing[1]) >> shift << shift
-            at = (place + columns) % surface.points[1]
-            overlap = overlap + heights[:rows].take(at, axis=1)
-            curvature.append((curvatures, at))
+class _Passage:
+    """Pieces of a surface on their way through the strip of an operating point."""
+
+    def __init__(self, strip, pair, surface, sharp):
+        along, step = surface.spacing[1], pair.spec.height_step
+        self._film = (strip.films(along) / step).astype(np.float32)
+        self._sharp = strip.breaking_curvatures(along, sharp) / step
+        self._surface, self._answer = surface, strip.answered(surface)
+        self._shift = self._answer.shift if self._answer else 0
+
+    def contacts(self, moving, rows, way):
+        """Contacts of a piece at every step: their row, diameter, and whether they break."""
+        surface, answer, shift = self._surface, self._answer, self._shift
+        added, columns, steps = self._added(moving), np.arange(self._film.size), []
+        for here in way:
+            overlap, curvature, by_oil = np.float32(0.0) - self._film, [], 0.0
+            for (speed, heights, curvatures, _), more in zip(moving, added, strict=True):
+                # Points of the surface that lie upstream come into the strip.
+                place = round(-here * speed / surface.spacing[1]) >> shift << shift
+                at = (place + columns) % surface.points[1]
+                overlap = overlap + heights[:rows].take(at, axis=1)
+                curvature.append((curvatures, at))
+                if answer:
+                    by_oil = by_oil + more(place >> shift)
             if answer:
-                by_oil = by_oil + more(place >> shift)
-        if answer:
-            inner = _finer(by_oil[1:-1, 1:-1], shift)
-            overlap += _finer(inner.T, shift).T[:rows, : films.size]
-        # Rows with a contact, each with the next row, so that others stay apart.
-        touched = (overlap > 0.0).any(axis=1)
-        touched[1:] |= touched[:-1]
-        some = np.flatnonzero(touched)
-        labels, count = scipy.ndimage.label(overlap[some] > 0.0, near)
-        if not count:
-            steps.append(np.empty((0, 3)))
-            continue
-        summits = scipy.ndimage.maximum_position(overlap[some], labels, np.arange(1, count + 1))
-        row, column = np.array(summits).T
-        row = some[row]
-        area = surface.spacing[0] * surface.spacing[1] * np.bincount(labels.ravel())[1:]
-        curved = sum(curvatures[row, at[column]] for curvatures, at in curvature)
-        if answer:
-            nodes = np.stack([row, column]) / (1 << shift)
-            from_oil = answer.curvatures(by_oil)
-            curved = curved + scipy.ndimage.map_coordinates(from_oil, nodes, order=1)
-        steps.append(np.column_stack([row, np.sqrt(4.0 * area / np.pi), curved > sharp[column]]))
-    return steps
+                inner = _finer(by_oil[1:-1, 1:-1], shift)
+                overlap += _finer(inner.T, shift).T[:rows, : columns.size]
+            row, column, points = _summits(overlap, surface.diagonal)
+            curved = sum(curvatures[row, at[column]] for curvatures, at in curvature)
+            if answer:
+                nodes = np.stack([row, column]) / (1 << shift)
+                from_oil = answer.curvatures(by_oil)
+                curved = curved + scipy.ndimage.map_coordinates(from_oil, nodes, order=1)
+            diameter = np.sqrt(4.0 * (surface.spacing[0] * surface.spacing[1] * points) / np.pi)
+            steps.append(np.column_stack([row, diameter, curved > self._sharp[column]]))
+        return steps
+
+    def _added(self, moving):
+        """Functions of the strip's place for what the oil adds to each moving surface at nodes."""
+        answer = self._answer
+        if answer is None:
+            return [None] * len(moving)
+        # In pure rolling the film responds to both surfaces alike, and their sum has one answer.
+        by_oil = answer.of_waves([own for *_, own in moving])
+        ends = np.cumsum([0, *(one.shapes.shape[1] for one in answer.answers)]).tolist()
+        number = np.arange(by_oil.shapes.shape[0])
+
+        def added(begin, end, first):
+            nodes = (first - 1 + number) % answer.points[1] + 1
+            fields = by_oil.fields[:, nodes, begin:end]
+            return np.sum(fields * by_oil.shapes[:, begin:end], axis=-1)
+
+        return [partial(added, *each) for each in itertools.pairwise(ends)]
 
 
-def _added(moving, answer):
-    """Functions of the place of a strip for what the oil adds to each moving surface at nodes."""
-    if answer is None:
-        return [None] * len(moving)
-    # In pure rolling the film responds to both surfaces alike, and their sum has one answer.
-    by_oil = answer.of_waves([own for *_, own in moving])
-    ends = np.cumsum([0, *(one.shapes.shape[1] for one in answer.answers)]).tolist()
-    number = np.arange(by_oil.shapes.shape[0])
-
-    def added(begin, end, first):
-        nodes = (first - 1 + number) % answer.points[1] + 1
-        return np.sum(by_oil.fields[:, nodes, begin:end] * by_oil.shapes[:, begin:end], axis=-1)
-
-    return [partial(added, *each) for each in itertools.pairwise(ends)]
+def _summits(overlap, diagonal):
+    """Row and column of the highest point of each contact, and its number of points."""
+    near = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
+    if diagonal:
+        near[0, 1 - diagonal] = near[2, 1 + diagonal] = 1
+    # Rows with a contact, each with the next row, so that others stay apart.
+    touched = (overlap > 0.0).any(axis=1)
+    touched[1:] |= touched[:-1]
+    some = np.flatnonzero(touched)
+    labels, count = scipy.ndimage.label(overlap[some] > 0.0, near)
+    if not count:
+        return np.empty((3, 0), int)
+    summits = scipy.ndimage.maximum_position(overlap[some], labels, np.arange(1, count + 1))
+    row, column = np.array(summits).T
+    return some[row], column, np.bincount(labels.ravel())[1:]
 
 
 def _finer(nodes, shift):

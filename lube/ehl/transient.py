@@ -194,6 +194,29 @@ class RoughPassage:
         the derivatives of an earlier step, or time step, are used again.
         """
         discrete, (pressure, offset, solid) = self._discrete, state
+        residual, derivatives = self._balances(had, flow)
+        in_film = pressure[1:-1] > residual / np.abs(derivatives.own)
+        # Complementary: a closed gap under pressure, or an open one without.
+        touching = solid + self._closed - gap > 0.0
+        cells = np.flatnonzero(touching | (solid != 0.0))
+        if is_slow or self._factors is None:
+            self._factored_film, self._factors = in_film, derivatives.factors(in_film)
+        self._moves, self._film = not np.array_equal(in_film, self._film), in_film
+        wanted = np.where(in_film, -residual, -pressure[1:-1])
+        missing = HERTZ_LOAD - discrete.weight @ pressure - discrete.step @ solid
+        closing = np.where(touching, self._closed - gap, -solid)[cells]
+        change, shift, cell_change = self._changes(
+            derivatives, np.append(wanted, missing), cells, touching[cells], closing
+        )
+        greatest = np.abs(np.append(change, cell_change)).max()
+        part = largest / max(greatest, largest)
+        pressure, solid = pressure.copy(), solid.copy()
+        pressure[1:-1] = np.maximum(pressure[1:-1] + part * change, 0.0)
+        solid[cells] += part * cell_change
+        return (pressure, offset + part * shift, solid), greatest
+
+    def _balances(self, had, flow):
+        """Residuals of the mass balances of the inner nodes, and their derivatives."""
         late, drag = self._late, flow.flux + flow.pressure_flow
         # Fractions of the dragged oil in the cells behind a node and before it.
         behind, before = self._squeeze + 0.5 - late, self._squeeze - 0.5 + late
@@ -202,56 +225,48 @@ class RoughPassage:
             behind * flow.drag_by_gap[1:] + late * flow.by_gap[1:],
             before * flow.drag_by_gap[:-1] - late * flow.by_gap[:-1],
         )
+        drag_behind, drag_before = behind * flow.drag_by_node[1:], before * flow.drag_by_node[:-1]
         by_node = (
-            before * flow.drag_by_node[:-1] - late * flow.by_left[:-1],
-            behind * flow.drag_by_node[1:]
-            + before * flow.drag_by_node[:-1]
-            + late * (flow.by_left[1:] - flow.by_right[:-1]),
-            behind * flow.drag_by_node[1:] + late * flow.by_right[1:],
+            drag_before - late * flow.by_left[:-1],
+            drag_behind + drag_before + late * (flow.by_left[1:] - flow.by_right[:-1]),
+            drag_behind + late * flow.by_right[1:],
         )
-        derivatives = _Derivatives(discrete, by_gap, by_node)
-        in_film = pressure[1:-1] > residual / np.abs(derivatives.own)
-        # Complementary: a closed gap under pressure, or an open one without.
-        touching = solid + self._closed - gap > 0.0
-        cells = np.flatnonzero(touching | (solid != 0.0))
-        if is_slow or self._factors is None:
-            self._factored_film, self._factors = in_film, derivatives.factors(in_film)
-        self._moves, self._film = not np.array_equal(in_film, self._film), in_film
-        changed = np.flatnonzero(in_film != self._factored_film)
-        wanted = np.where(in_film, -residual, -pressure[1:-1])
-        missing = HERTZ_LOAD - discrete.weight @ pressure - discrete.step @ solid
-        closing = np.where(touching, self._closed - gap, -solid)[cells]
+        return residual, _Derivatives(self._discrete, by_gap, by_node)
 
-        # The factored equations, bordered by those of the nodes that joined or left the film since,
-        # and by those of the cells in contact.
-        count = changed.size
-        columns = np.zeros((wanted.size + 1, count + cells.size))
-        columns[changed, np.arange(count)] = 1.0
-        columns[:-1, count:] = derivatives.opened(self._by_cell[:, cells])
-        columns[-1, count:] = discrete.step[cells]
-        rows, corner = np.zeros(columns.shape[::-1]), np.zeros((columns.shape[1],) * 2)
-        rows[np.arange(count), changed] = 1.0
-        joined = in_film[changed]
-        rows[:count][joined] = derivatives.rows(changed[joined])
-        corner[:count][joined] = columns[changed[joined]] * (np.arange(count + cells.size) >= count)
-        rows[count:, :-1] = discrete.deflection[cells, 1:-1]
-        rows[count:, -1] = 1.0
-        corner[count:, count:] = self._by_cell[np.ix_(cells, cells)]
-        open_again = count + np.flatnonzero(~touching[cells])
-        rows[open_again], corner[open_again], corner[open_again, open_again] = 0.0, 0.0, 1.0
-        right = np.column_stack([np.append(wanted, missing), columns])
-        solved = lu_solve(self._factors, right, trans=1, check_finite=False)
+    def _changes(self, derivatives, right, cells, is_closed, closing):
+        """Solve for the changes of inner pressures, offset, and solid pressure in the cells.
+
+        The factored equations are bordered by those of the nodes that joined or left the film
+        since, and by those of the cells in contact.
+        """
+        changed = np.flatnonzero(self._film != self._factored_film)
+        columns, rows, corner = self._border(derivatives, changed, cells, is_closed)
+        both = np.column_stack([right, columns])
+        solved = lu_solve(self._factors, both, trans=1, check_finite=False)
         free, answers = solved[:, 0], solved[:, 1:]
-        border = np.append(wanted[changed], closing) - rows @ free
+        border = np.append(right[changed], closing) - rows @ free
         extra = np.linalg.solve(corner - rows @ answers, border)
         *change, shift = free - answers @ extra
-        change, cell_change = np.array(change), extra[count:]
-        greatest = np.abs(np.append(change, cell_change)).max()
-        part = largest / max(greatest, largest)
-        pressure, solid = pressure.copy(), solid.copy()
-        pressure[1:-1] = np.maximum(pressure[1:-1] + part * change, 0.0)
-        solid[cells] += part * cell_change
-        return (pressure, offset + part * shift, solid), greatest
+        return np.array(change), shift, extra[changed.size :]
+
+    def _border(self, derivatives, changed, cells, is_closed):
+        """Columns, rows and corner that border the factored equations."""
+        count, size = changed.size, changed.size + cells.size
+        columns = np.zeros((self._film.size + 1, size))
+        columns[changed, np.arange(count)] = 1.0
+        columns[:-1, count:] = derivatives.opened(self._by_cell[:, cells])
+        columns[-1, count:] = self._discrete.step[cells]
+        rows, corner = np.zeros(columns.shape[::-1]), np.zeros((size, size))
+        rows[np.arange(count), changed] = 1.0
+        joined = self._film[changed]
+        rows[:count][joined] = derivatives.rows(changed[joined])
+        corner[:count][joined] = columns[changed[joined]] * (np.arange(size) >= count)
+        rows[count:, :-1] = self._discrete.deflection[cells, 1:-1]
+        rows[count:, -1] = 1.0
+        corner[count:, count:] = self._by_cell[np.ix_(cells, cells)]
+        open_again = count + np.flatnonzero(~is_closed)
+        rows[open_again], corner[open_again], corner[open_again, open_again] = 0.0, 0.0, 1.0
+        return columns, rows, corner
 
 
 @dataclass(frozen=True)

@@ -101,15 +101,8 @@ def film_at(
             table["surface_load_share"] = surface_load_share(table, rough_surfaces, with_shape)
         if answered_lines is not None or answered_surfaces is not None:
             solved = groups.thinned(factor).profiles if is_heated else groups.profiles
-            slip = xr.DataArray(slide_to_roll_ratio)
-            answers = (wave_responses, answered_lines), (surface_responses, answered_surfaces)
-            for responses, spec in answers:
-                if spec is not None:
-                    found = responses(solved, contact, slip, spec, threads)
-                    table = table.merge(found, compat="override", join="exact")
-            # The response depends on slip, so the film is stored for each slip.
-            stored = [name for name in (*_THINNED, "surface_load_share") if name in table]
-            table.update(table[stored].broadcast_like(slip))
+            slip, specs = xr.DataArray(slide_to_roll_ratio), (answered_lines, answered_surfaces)
+            table = _with_responses(table, solved, slip, specs, threads)
     return table
 
 
@@ -147,6 +140,18 @@ def _films_at(rows, groups, radius, thinner, part):
         load = groups.load * part.isel(film_formula=number, drop=True)
         films.append(replace(groups, load=load).film(row))
     return thinner * radius * xr.concat(films, names, join="exact")
+
+
+def _with_responses(table, solved, slip, specs, threads):
+    """Films with their responses to the waves of roughness lines, and of surfaces, if wanted."""
+    for responses, spec in zip((wave_responses, surface_responses), specs, strict=True):
+        if spec is not None:
+            found = responses(solved, table, slip, spec, threads)
+            table = table.merge(found, compat="override", join="exact")
+    # The response depends on slip, so the film is stored for each slip.
+    stored = [name for name in (*_THINNED, "surface_load_share") if name in table]
+    table.update(table[stored].broadcast_like(slip))
+    return table
 
 
 def _heating_factor(model, lubricant, contact, groups, slip):

@@ -72,33 +72,20 @@ def surfaces_at_records(
         `lube.inference.surface_scatter.surface_scatter`.
     """
     experiment, first = inputs["experiment"], films.isel(film_formula=0)
-    grid, known = _on_grid(study, inputs)
-    rows = {key: row for row, key in enumerate(study_windows(study, grid).keys)}
-    row_of = np.array([rows.get(key, -1) for key in study_windows(study, first).keys], int)
-    ratios = _curve_ratios(study, first)
-    own, curves = np.empty((4, row_of.size)), np.empty((4, ratios.size, row_of.size))
-    here = row_of >= 0
-    own[:, here] = known[:, row_of[here]]
-    others = _off_grid(study, *(each.isel(record=~here) for each in (experiment, first)))
-    own[:, ~here] = _sampled(study, others, threads)
-    parts = [(np.full(here.size, True), first)]
-    if study.gap.is_answered:  # the responses of the film are over other wavelengths
-        parts = [(here, grid.isel(record=row_of[here])), (~here, others)]
+    own, parts = _at_films(study, first, inputs, threads)
+    ratios, pair = _curve_ratios(study, first), RoughPair.of(study)
     thickness = xr.DataArray(ratios, dims="curve_film") * first["composite_rms_roughness"].item()
+    strengths = _layer_strengths(pair, first, thickness.median())
+    scatter, curves = np.empty(own.shape[1]), np.empty((4, ratios.size, own.shape[1]))
+    of_layers = np.empty((strengths.size, len(LAYER_FILMS), own.shape[1]))
     slips, turns = (experiment[name].values for name in (_SLIP, "turns"))
-    pair, scatter = RoughPair.of(study), np.empty(row_of.size)
-    few, strengths = thickness[LAYER_FILMS], _layer_strengths(pair, first, thickness.median())
-    of_layers = np.empty((strengths.size, few.size, row_of.size))
-    for records, some in (part for part in parts if part[0].any()):
+    for records, some in parts:
         scatter[records] = surface_scatter(
             pair, some, own[0, records], slips[records], turns[records], study.rig.drift
         )
-        ones = xr.ones_like(some["film_thickness"])
-        many = some.assign(film_thickness=thickness * ones)
-        some = some.assign(film_thickness=few * ones)
-        curves[..., records] = _sampled(study, many, threads, FEWER)
-        for row, weaker in zip(of_layers, pair.layer.strength / strengths, strict=True):
-            row[..., records] = _sampled(study, some, threads, LAYER_FEWER, weaker)[0]
+        some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
+        found = _curves(study, some, pair.layer.strength / strengths, threads)
+        curves[..., records], of_layers[..., records] = found
     by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
     found = {
         "film_formula": films["film_formula"].values,
@@ -114,6 +101,28 @@ def surfaces_at_records(
         "record": experiment["record"].values,
     }
     return xr.Dataset(with_dims("surface_records", found))
+
+
+def _at_films(study, first, inputs, threads):
+    """Numbers as from `_numbers` at the films of records, and films of parts of the records."""
+    grid, known = _on_grid(study, inputs)
+    rows = {key: row for row, key in enumerate(study_windows(study, grid).keys)}
+    row_of = np.array([rows.get(key, -1) for key in study_windows(study, first).keys], int)
+    found, here = np.empty((4, row_of.size)), row_of >= 0
+    found[:, here] = known[:, row_of[here]]
+    others = _off_grid(study, inputs["experiment"].isel(record=~here), first.isel(record=~here))
+    found[:, ~here] = _sampled(study, others, threads)
+    parts = [(np.full(here.size, True), first)]
+    if study.gap.is_answered:  # the responses of the film are over other wavelengths
+        parts = [(here, grid.isel(record=row_of[here])), (~here, others)]
+    return found, [part for part in parts if part[0].any()]
+
+
+def _curves(study, films, weaker, threads):
+    """Numbers as from `_numbers` at the films of curves, and probabilities with weaker layers."""
+    found, few = _sampled(study, films, threads, FEWER), films.isel(curve_film=LAYER_FILMS)
+    of_layers = [_sampled(study, few, threads, LAYER_FEWER, one)[0] for one in weaker]
+    return found, of_layers
 
 
 def _by_formula(own, log_ratios, curves, films, has_shape):

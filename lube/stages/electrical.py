@@ -57,16 +57,11 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         length = contact["mean_contact_length"].mean("realisation")
         share = contact["breakthrough_probability_mean"]
         table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
-    closed = study.resistivity * share / length.where(length > 0.0)
-    deviations = 0.0, *(study.resistivity_range or (np.nan, np.nan))
-    limits = [closed * (1.0 + deviation) for deviation in deviations]
-    table |= values_with_limits("closed_resistance", limits)
+    table |= _closed_resistance(study, share, length)
     capacitance = table["capacitance"] + table["surrounding_capacitance"]
-    phases = [
-        np.degrees(_phase(rig, share, table["closed_resistance"].fillna(1.0), capacitance))
-        for rig in rigs.values()
-    ]
-    table["impedance_phase"] = xr.concat(phases, "rig", coords="minimal", compat="override")
+    table["impedance_phase"] = _impedance_phases(
+        rigs, share, table["closed_resistance"], capacitance
+    )
     found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(six_digits)
     found = found.merge(readings, join="exact")
     found["discharge_probability"] = _discharges(study, film, rigs, threads, surfaces)
@@ -76,11 +71,25 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     return label(found.assign(impedance_frequency=study.rig.frequency), "electrical")
 
 
-def _phase(rig, *circuit):
-    """Phase of the impedance that a bridge with a rig's series resistance reads."""
-    settings = {"frequency": rig.frequency, "series": rig.series_resistance + rig.lead_resistance}
-    impedance = xr.apply_ufunc(electrical.read_impedance, *circuit, kwargs=settings)
-    return xr.apply_ufunc(np.angle, impedance)
+def _closed_resistance(study, share, length):
+    """Resistance while the contact is closed, ohm, and its limits by those of the resistivity."""
+    closed = study.resistivity * share / length.where(length > 0.0)
+    deviations = 0.0, *(study.resistivity_range or (np.nan, np.nan))
+    limits = [closed * (1.0 + deviation) for deviation in deviations]
+    return values_with_limits("closed_resistance", limits)
+
+
+def _impedance_phases(rigs, share, resistance, capacitance):
+    """Phase of the impedance that a bridge with each rig's series resistance reads, degrees."""
+    phases = []
+    for rig in rigs.values():
+        series = rig.series_resistance + rig.lead_resistance
+        settings = {"frequency": rig.frequency, "series": series}
+        impedance = xr.apply_ufunc(
+            electrical.read_impedance, share, resistance.fillna(1.0), capacitance, kwargs=settings
+        )
+        phases.append(np.degrees(xr.apply_ufunc(np.angle, impedance)))
+    return xr.concat(phases, "rig", coords="minimal", compat="override")
 
 
 def _capacitances(study, film):

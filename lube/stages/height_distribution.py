@@ -1,5 +1,6 @@
 """The height distribution stage: contact of lines with other values of skewness and kurtosis."""
 
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -50,19 +51,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     films = LAMBDA_RATIOS * film["composite_rms_roughness"].item()
     points = point.drop_vars("lambda_ratio").assign(film_thickness=("lambda_ratio", films))
     windows = study_windows(study, points)
-
-    def on_lines(level):
-        heights = dict(zip(("skewness", "kurtosis"), level, strict=True))
-        lines = tuple(line.model_copy(update=heights) for line in spec.lines)
-        other = spec.model_copy(update={"lines": lines})
-        shares, moments = [], []
-        for number in range(PAIRS):
-            pair = draw_realisation(other, study.seed, number)
-            shares.append(windows.count(pair)[:, 1::-1])
-            moments += map(_moments, pair)
-        return shares, moments
-
-    found = on_threads(on_lines, product(SKEWNESS, KURTOSIS), threads)
+    found = on_threads(partial(_on_lines, study, windows), product(SKEWNESS, KURTOSIS), threads)
     shares, moments = map(np.array, zip(*found, strict=True))
     shape, dims = (len(SKEWNESS), len(KURTOSIS)), ("height_skewness", "height_kurtosis")
     shares = shares.reshape(*shape, *shares.shape[1:])
@@ -78,6 +67,20 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     found = found.drop_vars(PROBABILITIES).assign(contact_half_width=half_width)
     attributes = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
     return label(found.assign_coords(revolutions=1).assign_attrs(attributes), "height_distribution")
+
+
+def _on_lines(study, windows, level):
+    """Probabilities on pairs of lines of some skewness and kurtosis, and the values attained."""
+    heights = dict(zip(("skewness", "kurtosis"), level, strict=True))
+    spec = study.line_spec
+    lines = tuple(line.model_copy(update=heights) for line in spec.lines)
+    spec = spec.model_copy(update={"lines": lines})
+    shares, moments = [], []
+    for number in range(PAIRS):
+        pair = draw_realisation(spec, study.seed, number)
+        shares.append(windows.count(pair)[:, 1::-1])
+        moments += map(_moments, pair)
+    return shares, moments
 
 
 def _moments(line):

@@ -40,16 +40,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = at_slip(with_surface_responses(inputs), slip).isel(film_formula=0, drop=True)
     film = film.transpose(*POINT_DIMS, ...)
     threshold, reading = _reading(inputs["electrical"], study)
-    options = study.inlet_model | {"slide_to_roll_ratio": slip}
-    by_coefficient = planning.film_by_coefficient(
-        inputs["lubricant"],
-        study.rough_rollers,
-        film["force"],
-        film["speed"],
-        study.film_formulas[0],
-        **options,
-    )
-    by_coefficient = by_coefficient.transpose(*POINT_DIMS).values.ravel()
+    by_coefficient = _by_coefficient(study, inputs["lubricant"], film, slip)
     unknown = {"half_width": dict.fromkeys(study.contact_model, 0.0)}
     if "sensitivity" in inputs:
         unknown["half_width_assumed"] = _assumed(inputs["sensitivity"], study)
@@ -58,20 +49,11 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     sizes, tables = [film.sizes[name] for name in POINT_DIMS], {}
     for model in study.contact_model:
         of_model = _of_lines if model == "line" else _of_surfaces
-        found, size, ratios, read, ensemble = of_model(study, inputs, film, slip, reading, threads)
-        table = {
-            "breakthrough_probability": found.probability,
-            "slope_by_film": found.by_film,
-            "slope_by_layer": found.by_layer,
-            "film_by_coefficient": by_coefficient,
-            "reading_error": read,
-        }
-        values = {name: _digits(each.reshape(sizes)) for name, each in table.items()}
-        errors = [planning.relative_error(found.probability, size, one, read) for one in ratios]
-        for name, others in unknown.items():
-            error = np.hypot(errors, others[model])
-            widths = planning.half_widths(found, by_coefficient, error, ensemble)
-            values[name] = _digits(widths.reshape(len(planning.QUANTITIES), len(TURNS), *sizes))
+        scatter = of_model(study, inputs, film, slip, reading, threads)
+        others = {name: by_model[model] for name, by_model in unknown.items()}
+        values = {}
+        for name, each in _expected(scatter, by_coefficient, others).items():
+            values[name] = _digits(each.reshape(*each.shape[:-1], *sizes))
         values["best_threshold"] = threshold
         tables[model] = xr.Dataset(with_dims("plan", values), coordinates)
     dataset = over_contact_models("plan", tables) if study.has_surfaces else tables["line"]
@@ -80,6 +62,41 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         if names := [name for name in factors if name not in (*CHOICES, SEED)]:
             dataset = dataset.merge(_to_measure(study, inputs["sensitivity"], names), join="exact")
     return label(dataset, "plan")
+
+
+def _by_coefficient(study, lubricant, film, slip):
+    """Slope of the film's logarithm over that of the pressure-viscosity coefficient, (P,)."""
+    options = study.inlet_model | {"slide_to_roll_ratio": slip}
+    found = planning.film_by_coefficient(
+        lubricant,
+        study.rough_rollers,
+        film["force"],
+        film["speed"],
+        study.film_formulas[0],
+        **options,
+    )
+    return found.transpose(*POINT_DIMS).values.ravel()
+
+
+def _expected(scatter, by_coefficient, unknown):
+    """Slopes and half-widths of intervals at operating points, shape (..., P).
+
+    `scatter` is from `_of_lines` or `_of_surfaces`. `unknown` has, by the name of half-widths, the
+    standard deviation of ln P by all that is not known.
+    """
+    found, size, ratios, read, ensemble = scatter
+    values = {
+        "breakthrough_probability": found.probability,
+        "slope_by_film": found.by_film,
+        "slope_by_layer": found.by_layer,
+        "film_by_coefficient": by_coefficient,
+        "reading_error": read,
+    }
+    errors = [planning.relative_error(found.probability, size, one, read) for one in ratios]
+    for name, deviation in unknown.items():
+        error = np.hypot(errors, deviation)
+        values[name] = planning.half_widths(found, by_coefficient, error, ensemble)
+    return values
 
 
 def _of_lines(study, inputs, film, slip, reading, threads):

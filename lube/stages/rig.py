@@ -39,9 +39,29 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         If the film is known at none of the points.
     """
     points = known_rows(with_surface_responses(inputs), study.trace_points, study.gap)
-    count = points.sizes["operating_point"]
+    voltage, counters, steps = _recorded(study, points, threads)
+    values = {
+        "voltage": voltage,
+        "resistance": resistance_from_voltage(voltage, study.rig),
+        "contact_share": [[one.below.sum(axis=1) / one.samples for one in row] for row in counters],
+        "true_contact_share": steps[:, 0] / steps[:, 1],
+    }
+    values |= {f"rig_{name}": getattr(study.rig, name) for name in _KEPT}
+    levels = {name: points[name].values for name in EXPERIMENT_DIMS}
+    levels |= {
+        "rig_time": 1.0 / study.rig.sampling_rate * np.arange(voltage.shape[1]),
+        "bandwidth": np.array(BANDWIDTHS),
+        "threshold": np.array(study.experiment.thresholds),
+        "origin": "simulated",
+        "revolutions": study.rig.revolutions,
+    }
+    return label(xr.Dataset(with_dims("rig", values), with_dims("rig", levels)), "rig")
+
+
+def _recorded(study, points, threads):
+    """Voltages of a revolution, counters by bandwidth, and time steps: in contact, and all."""
+    count, interval = points.sizes["operating_point"], 1.0 / study.rig.sampling_rate
     rigs = [study.rig.model_copy(update={"bandwidth": band}) for band in BANDWIDTHS]
-    interval = 1.0 / study.rig.sampling_rate
     counters = [
         [record_counter(study.experiment, rig, "voltage", interval) for rig in rigs]
         for _ in range(count)
@@ -53,20 +73,4 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         for rig, counter in zip(rigs, counters[number], strict=True):
             counter.add(revolution.voltage(rig))
         steps[number] += np.count_nonzero(revolution.contact), revolution.contact.size
-    voltage = np.array([voltages[number] for number in range(count)])
-    values = {
-        "voltage": voltage,
-        "resistance": resistance_from_voltage(voltage, study.rig),
-        "contact_share": [[one.below.sum(axis=1) / one.samples for one in row] for row in counters],
-        "true_contact_share": steps[:, 0] / steps[:, 1],
-    }
-    values |= {f"rig_{name}": getattr(study.rig, name) for name in _KEPT}
-    levels = {name: points[name].values for name in EXPERIMENT_DIMS}
-    levels |= {
-        "rig_time": interval * np.arange(voltage.shape[1]),
-        "bandwidth": np.array(BANDWIDTHS),
-        "threshold": np.array(study.experiment.thresholds),
-        "origin": "simulated",
-        "revolutions": study.rig.revolutions,
-    }
-    return label(xr.Dataset(with_dims("rig", values), with_dims("rig", levels)), "rig")
+    return np.array([voltages[number] for number in range(count)]), counters, steps

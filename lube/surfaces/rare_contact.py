@@ -272,31 +272,12 @@ def rare_contact_under(
         expected = share[-1] * np.exp(log_tails.max())
         each = zip(pair.lines, lines, window.shapes, strict=True)
         answered = tuple(Surface(line, line, *answers) for line, *answers in each)
-        film, answers = window.film.astype(np.float32), (window.at_once, window.shift)
-        shares[:, i] = pair.windows(film[part], touching, own, answered, answers) * expected
-        if not levels:
-            continue
-        some = slice(0, RUNS, RUNS // FOLLOWED)
-        # For another layout in memory Numba would compile the kernel once more.
-        places, heights = map(np.ascontiguousarray, (pair.places[some], touching[1][some]))
-        above = part.start + known[some], heights
-        # From one look to the next the surfaces shift against each other by a point at most.
-        shift = np.abs(np.diff(speed_ratios[i])[:, 0])
-        most = film.size // LOOKS
-        strides = np.maximum(most / np.maximum(most * shift, 1.0), 1.0).astype(np.int64)
-        found = touching_runs_under(
-            answered,
-            places,
-            pair.covariances,
-            above,
-            film,
-            window.covariances,
-            window.shift,
-            speed_ratios[i],
-            strides,
-            own,
-        )
-        runs[:, i] = found * (expected / heights.size)
+        film, answers = window.film[part].astype(np.float32), (window.at_once, window.shift)
+        shares[:, i] = pair.windows(film, touching, own, answered, answers) * expected
+        if levels:
+            above = part.start + known, touching[1]
+            found = pair.runs_under(window, answered, above, speed_ratios[i], own)
+            runs[:, i] = found * (expected / FOLLOWED)
     return shares, runs
 
 
@@ -362,6 +343,28 @@ class RarePair:
                 answered_windows(surfaces, starts, correlation, touching, film, *answers, factor)
             )
         return np.array(touching_windows(self.line, starts, correlation, touching, film, factor))
+
+    def runs_under(self, window, surfaces, touching, speed_ratios, factor):
+        """Sum the weights of `FOLLOWED` runs through an uneven window, each with a known point."""
+        # For another layout in memory Numba would compile the kernel once more.
+        some = slice(0, RUNS, RUNS // FOLLOWED)
+        places, *known = (np.ascontiguousarray(one[some]) for one in (self.places, *touching))
+        # From one look to the next the surfaces shift against each other by a point at most.
+        shift = np.abs(np.diff(speed_ratios)[:, 0])
+        most = window.film.size // LOOKS
+        strides = np.maximum(most / np.maximum(most * shift, 1.0), 1.0).astype(np.int64)
+        return touching_runs_under(
+            surfaces,
+            places,
+            self.covariances,
+            tuple(known),
+            window.film.astype(np.float32),
+            window.covariances,
+            window.shift,
+            speed_ratios,
+            strides,
+            factor,
+        )
 
 
 def _both_sides(covariance, lags):

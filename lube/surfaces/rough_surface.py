@@ -291,26 +291,31 @@ def rough_surface(
     # The first column holds a wave and its mirror image.
     number = np.full((coarse[0], along.size), 2)
     number[:, 0] = 1
-    lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
-    of_each = []
-    for roller, lay in enumerate(lays):
-        # The variance of the lines' waves is divided among the surface's waves of the same length,
-        # in shells of a width at which none is empty.
-        step = max(unstretched(steps[1], 0.0, *lay), unstretched(0.0, steps[0], *lay))
-        shell = np.rint(unstretched(along, down, *lay) / step).astype(np.int64)
-        power = _power(spec, roller, step, shell.max() + 1)
-        of_each.append((power / np.bincount(shell.ravel(), number.ravel()))[shell])
-    first, second = of_each
+    first, second = (_variances(spec, roller, steps, (down, along), number) for roller in range(2))
     variances = first + second
     rms = math.sqrt(np.sum(variances * number))
     first = first / np.where(variances > 0.0, variances, 1.0)
     curvatures = 0.5 * (along**2 + down**2)
-    is_mirrored = all(angle % 90.0 == 0.0 or ratio == 1.0 for ratio, angle in lays)
+    is_mirrored = all(line.lay_angle % 90.0 == 0.0 or line.lay_ratio == 1.0 for line in spec.lines)
     mixed = 0.0 if is_mirrored else np.sum(variances * number * along * down)
     diagonal = -int(np.sign(mixed))
     return Surface(
         spacing, points, coarse, rms, first, variances, curvatures, is_mirrored, diagonal
     )
+
+
+def _variances(spec, roller, steps, waves, number):
+    """Variance of the heights of one roller's surface by each wave, squared height steps.
+
+    The variance of the line's waves is divided among the surface's waves of the same length, in
+    shells of a width at which none is empty.
+    """
+    line, (down, along) = spec.lines[roller], waves
+    lay = line.lay_ratio, line.lay_angle
+    step = max(unstretched(steps[1], 0.0, *lay), unstretched(0.0, steps[0], *lay))
+    shell = np.rint(unstretched(along, down, *lay) / step).astype(np.int64)
+    power = _power(spec, roller, step, shell.max() + 1)
+    return (power / np.bincount(shell.ravel(), number.ravel()))[shell]
 
 
 @functools.lru_cache(maxsize=2)
