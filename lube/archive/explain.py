@@ -98,12 +98,7 @@ def explain(path: File, realisation: int | None = 0, **levels: float | str) -> E
     point, properties = (_at(stored, table) for table in (film, lubricant))
     values = json_attribute(contact, "config", path)
     run = values["film"] | values[kind]
-    if any(line.get("heights") for line in run["lines"]["lines"]):
-        raise DataError(
-            f"{path}: got a line that is a measured profile, need lines drawn from a spectrum: "
-            "its heights are in roughness.nc alone"
-        )
-    pair = _pair(run)
+    pair = _pair(run, path)
     if kind == "areal":
         inputs = {"film": film.isel(film_formula=slice(contact.sizes["film_formula"]))}
         if pair.gap.is_answered:
@@ -159,8 +154,13 @@ def _level(coordinate, path, wanted):
     return index
 
 
-def _pair(run):
-    """Rough rollers of a study's values."""
+def _pair(run, path):
+    """Rough rollers of a study's values, if their lines were drawn."""
+    if any(line.get("heights") for line in run["lines"]["lines"]):
+        raise DataError(
+            f"{path}: got a line that is a measured profile, need lines drawn from a spectrum: "
+            "its heights are in roughness.nc alone"
+        )
     layer = BoundaryLayer.model_construct(**run["boundary_layer"])
     gap = Gap(run["film_shape"], run["roughness_deformation"])
     return RoughPair(LineSpec(**run["lines"]), run["rollers"]["length"], layer, run["seed"], gap)

@@ -124,9 +124,7 @@ def duty(
     True
     """
     columns, labels = _columns(points)
-    share = columns.get("share", xr.ones_like(columns["force"]))
-    if not share.sum() > 0.0:
-        raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
+    columns["share"] = share = _shares(columns)
     gap = Gap(film_shape, roughness_deformation)
     slip = _slip(columns)
     choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus, 0.0, load_sharing)
@@ -135,25 +133,17 @@ def duty(
     formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
     assumed = Assumptions(bands, rollers, oil, choices, formula, seed)
     assumed.check(given)
-    turning = rollers.pair.with_radii(given["radius"], given["second_radius"])
-    check_contact(rollers, turning.contact_half_width(given["force"]), choices)
-    table = film_of_oil(oil, turning, given, [formula], **film_model(rollers, choices))
-    table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
-    table = table.assign(force=given["force"])
+    table = _films(rollers, oil, given, formula, choices)
     pair = rollers.rough_pair(seed, gap)
-    share, parts, whole = share / share.sum(), of_film(table), {}
+    parts, whole = of_film(table), {}
     if "line" in choices.models:
         contact = ensemble(pair, table, realisations, 0.0)
         on_pairs = pair_probabilities(pair, table, slip)
-        width = 2.0 * table["contact_half_width"].max().item()
-        whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))
         parts = joined(table, contact, on_pairs)
+        whole = _whole(parts, on_pairs, share, pair.spec)
     if "surface" in choices.models:
         parts = parts.assign(of_surface(pair, table, slip))
-        kinds = [f"{kind}{end}" for kind in ("probability", "rate") for end in LIMITS]
-        for name in (*kinds, *_OF_PAIR):
-            of_points = parts[f"surface_breakthrough_{name}"]
-            whole[f"whole_surface_{name}"] = (of_points * share).sum(skipna=False)
+        whole |= _whole_of_surface(parts, share)
     if choices.has_surfaces:
         parts = parts.assign(surface_load_share=table["surface_load_share"])
     if assumed.wanted:
@@ -162,11 +152,16 @@ def duty(
         # Weighted first: the samples are the same at all points.
         of_cycle = (samples * share).sum("point", skipna=False)
         whole |= assumed.limits(of_cycle, "whole_assumed_probability")
-    found = columns | {"share": share} | dict(parts.data_vars) | whole
-    found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers, choices.models)
-    for name in labels.keys() & found.variables.keys():
-        raise DataError(f"points: got the column {name!r}, which the answer has, need another name")
-    return Answer(labels | dict(found.data_vars), found.coords, found.attrs)
+    found = xr.Dataset(columns | dict(parts.data_vars) | whole, attrs=parts.attrs)
+    return _with_labels(with_remarks(found, table, rollers, choices.models), labels)
+
+
+def _shares(columns):
+    """Share of time of each point; together they are 1."""
+    share = columns.get("share", xr.ones_like(columns["force"]))
+    if not share.sum() > 0.0:
+        raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
+    return share / share.sum()
 
 
 def _slip(columns):
@@ -176,9 +171,10 @@ def _slip(columns):
     return 2.0 * (first - second) / (first + second)
 
 
-def _whole(contact, on_pairs, share, windows):
-    """Probabilities and rate over the whole cycle, with their limits."""
-    counted = (contact["breakthrough_probability"] * share).sum("point", skipna=False)
+def _whole(parts, on_pairs, share, lines):
+    """Probabilities and rate of lines over the whole cycle, with their limits."""
+    windows = lines.independent_windows(2.0 * parts["contact_half_width"].max().item())
+    counted = (parts["breakthrough_probability"] * share).sum("point", skipna=False)
     limits = probability_interval(counted.values, windows)
     # Summed on each pair of lines first: the lines are the same at all points.
     sampled = pair_limits((on_pairs * share).sum("point", skipna=False))
@@ -190,6 +186,32 @@ def _whole(contact, on_pairs, share, windows):
         whole[f"whole_tail_probability{end}"] = sampled[f"breakthrough_probability{end}"]
         whole[f"whole_tail_rate{end}"] = sampled[f"breakthrough_rate{end}"]
     return whole
+
+
+def _whole_of_surface(parts, share):
+    """Probability and rate of the surface over the whole cycle, with their limits."""
+    kinds = [f"{kind}{end}" for kind in ("probability", "rate") for end in LIMITS]
+    of_points = {name: parts[f"surface_breakthrough_{name}"] for name in (*kinds, *_OF_PAIR)}
+    return {
+        f"whole_surface_{name}": (each * share).sum(skipna=False)
+        for name, each in of_points.items()
+    }
+
+
+def _films(rollers, oil, given, formula, choices):
+    """Film table over the points, each with its own radii."""
+    turning = rollers.pair.with_radii(given["radius"], given["second_radius"])
+    check_contact(rollers, turning.contact_half_width(given["force"]), choices)
+    table = film_of_oil(oil, turning, given, [formula], **film_model(rollers, choices))
+    table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
+    return table.assign(force=given["force"])
+
+
+def _with_labels(found, labels):
+    """Put labels of the points before what was found."""
+    for name in labels.keys() & found.variables.keys():
+        raise DataError(f"points: got the column {name!r}, which the answer has, need another name")
+    return Answer(labels | dict(found.data_vars), found.coords, found.attrs)
 
 
 def _conditions(columns, rollers):

@@ -102,11 +102,7 @@ def plan(
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else list(dict.fromkeys(("line", model)))
-    if rig and model == "surface" and not rollers.lines.follows_rolling:
-        raise StudyError(
-            f"rig: got {rig!r} with ridges for which no line stands, need none: how a rig misreads "
-            "surfaces follows from lines"
-        )
+    _check_ridges(rig, model, rollers)
     gap = Gap(film_shape, roughness_deformation)
     choices = Choices.of(
         gap, models, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
@@ -122,33 +118,58 @@ def plan(
         found, size, ratio = planning.on_surfaces(pair, table, contact, slip, records)
         reading, realisations = planning.reading_of_surfaces(reading, found.probability), SURFACES
     else:
-        contact = ensemble(pair, table, realisations, slip)
-        slower, width = min(speed_ratios(slip)), 2.0 * table["contact_half_width"]
-        windows = rollers.lines.independent_windows(width, slower)
-        size = sample_size(contact["breakthrough_probability"], windows).ravel()
-        found = planning.slopes(pair, table)
-        ratio = planning.line_ratios(pair, table, slip, records)
+        found, size, ratio = _on_lines(pair, table, realisations, slip, records)
     error = planning.relative_error(found.probability, size, ratio[:, None], reading)
-    oils, dims = oil.at(table["temperature"]), table["film_thickness"].dims
+    by_coefficient = _film_by_coefficient(oil, rollers, table, formula, choices.inlet_meniscus)
+    widths = planning.half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
+    answer = _labelled(table, turns, thresholds, found.probability, widths, reading)
+    return with_remarks(answer, table, rollers, [model])
+
+
+def _check_ridges(rig, model, rollers):
+    """Refuse a rig whose readings of the surfaces would follow from lines that do not exist."""
+    if rig and model == "surface" and not rollers.lines.follows_rolling:
+        raise StudyError(
+            f"rig: got {rig!r} with ridges for which no line stands, need none: how a rig misreads "
+            "surfaces follows from lines"
+        )
+
+
+def _on_lines(pair, table, realisations, slip, turns):
+    """Slopes, sample size and scatter of records of lines, as `planning.on_surfaces` finds them."""
+    contact = ensemble(pair, table, realisations, slip)
+    slower, width = min(speed_ratios(slip)), 2.0 * table["contact_half_width"]
+    windows = pair.spec.independent_windows(width, slower)
+    size = sample_size(contact["breakthrough_probability"], windows).ravel()
+    found = planning.slopes(pair, table)
+    return found, size, planning.line_ratios(pair, table, slip, turns)
+
+
+def _film_by_coefficient(oil, rollers, table, film_formula, inlet_meniscus):
+    """Slope of the film over the pressure-viscosity coefficient, at each operating point."""
     # Heating does not depend on the coefficient.
     slope = planning.film_by_coefficient(
-        oils,
+        oil.at(table["temperature"]),
         rollers.pair,
         table["force"],
         table["speed"],
-        formula,
-        inlet_meniscus=choices.inlet_meniscus,
+        film_formula,
+        inlet_meniscus=inlet_meniscus,
     )
-    by_coefficient = slope.transpose(*dims).values.ravel()
-    widths = planning.half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
-    shape, read = table["film_thickness"].shape, (*thresholds.dims, *dims)
+    return slope.transpose(*table["film_thickness"].dims).values.ravel()
+
+
+def _labelled(table, turns, thresholds, probability, widths, reading):
+    """Film, probability, half-widths and reading error over their dimensions."""
+    film = table["film_thickness"]
     answer = of_film(table).assign_coords(quantity=list(planning.QUANTITIES))
     answer = answer.assign_coords(turns.coords).assign_coords(thresholds.coords)
-    answer["breakthrough_probability"] = dims, found.probability.reshape(shape)
-    sizes = len(planning.QUANTITIES), *turns.shape, *thresholds.shape, *shape
-    answer["half_width"] = ("quantity", *turns.dims, *read), widths.reshape(sizes)
-    answer["reading_error"] = read, reading.reshape((*thresholds.shape, *shape))
-    return with_remarks(answer, table, rollers, [model])
+    answer["breakthrough_probability"] = film.dims, probability.reshape(film.shape)
+    dims, shape = (*thresholds.dims, *film.dims), (*thresholds.shape, *film.shape)
+    widths = widths.reshape(len(planning.QUANTITIES), *turns.shape, *shape)
+    answer["half_width"] = ("quantity", *turns.dims, *dims), widths
+    answer["reading_error"] = dims, reading.reshape(shape)
+    return answer
 
 
 def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):

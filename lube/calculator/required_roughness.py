@@ -91,24 +91,13 @@ def required_roughness(
     assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
     search = FilmSearch(assumed, share, realisations)
 
-    film = film_in_si(rollers, oil, force, speed, temperature, one, choices)
+    def film_of(rollers, choices):
+        return film_in_si(rollers, oil, force, speed, temperature, one, choices)
+
+    film = film_of(rollers, choices)
     own = single(film["lambda_ratio"])
     check_known(np.isfinite(own))
-
-    least = 0.0
-
-    def factor_at(ratios):
-        return own / ratios
-
-    if load_sharing != "none":
-        # What the oil does to the roughness does not change how much its asperities carry.
-        as_drawn = replace(choices, gap=Gap(film_shape))
-        levels = own / RATIOS[::-1]
-        films = [
-            film_in_si(_rougher(rollers, each), oil, force, speed, temperature, one, as_drawn)
-            for each in levels
-        ]
-        factor_at, least = _factors(films, levels)
+    factor_at, least = _factors(film_of, rollers, choices, own)
 
     def table_at(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
@@ -120,29 +109,34 @@ def required_roughness(
 
     half_width = film["contact_half_width"].item()
     with np.errstate(divide="ignore"):  # a limit may be 0
-        found = search.films(half_width, points_at, table_at, factor_at=factor_at)
-        ratios = found["lambda_ratio"]
+        ratios = search.films(half_width, points_at, table_at, factor_at=factor_at)["lambda_ratio"]
         factor = factor_at(ratios)
-    if ratios[0] < least:
-        raise RangeError(
-            f"share: got {share}, which no film is known to have: the asperities of such rough "
-            f"rollers carry more than {100.0 * MOST:g} % of the load"
-        )
+    _check_ratio(ratios[0], least, share)
     sigma = rollers.pair.composite_rms_roughness * factor
     found = {"roughness_factor": factor, "composite_rms_roughness": sigma, "lambda_ratio": ratios}
-    changed = {name: factor[0] * film[name] for name in _CHANGED if name in film}
+    changed = _changed(film, factor[0], ratios[0])
     if choices.has_surfaces:  # pressures grow with heights and film
         share_here = surface_load_share(table_at(ratios[:1]), rollers.lines, gap.has_shape)
         changed["surface_load_share"] = factor[0] * share_here
-    changed["lambda_ratio"] = xr.full_like(film["lambda_ratio"], ratios[0])
-    return labelled(found, film.assign(changed), _rougher(rollers, factor[0]), choices)
+    return labelled(found, changed, _rougher(rollers, factor[0]), choices)
 
 
-def _factors(films, levels):
+def _factors(film_of, rollers, choices, own):
     """Return a function that finds the factor of the heights at lambda ratios, and the least ratio.
 
-    Where asperities share the load, the film grows with the heights, too.
+    `own` is the lambda ratio of the heights as given.
     """
+    if choices.load_sharing == "none":
+        return lambda ratios: own / ratios, 0.0
+    # What the oil does to the roughness does not change how much its asperities carry.
+    as_drawn = replace(choices, gap=Gap(choices.gap.film_shape))
+    levels = own / RATIOS[::-1]
+    films = [film_of(_rougher(rollers, each), as_drawn) for each in levels]
+    return _factors_of_films(films, levels)
+
+
+def _factors_of_films(films, levels):
+    """As `_factors`, from films that grow with the heights, as asperities share the load."""
     names = "lambda_ratio", "surface_load_share"
     ratios, shares = np.array([[one[name].item() for one in films] for name in names])
     # Where little of the load is left for the oil, the film grows faster than the heights.
@@ -167,3 +161,18 @@ def _rougher(rollers, factor):
     changed.lines = deviating_lines(rollers.lines, {"rms_roughness": factor - 1.0})
     changed.pair = rollers.pair.with_rms_heights(changed.lines.rms_height)
     return changed
+
+
+def _check_ratio(ratio, least, share):
+    """Refuse a lambda ratio below the least one whose film is known."""
+    if ratio < least:
+        raise RangeError(
+            f"share: got {share}, which no film is known to have: the asperities of such rough "
+            f"rollers carry more than {100.0 * MOST:g} % of the load"
+        )
+
+
+def _changed(film, factor, ratio):
+    """Film of rollers with some times the heights, at their lambda ratio."""
+    changed = {name: factor * film[name] for name in _CHANGED if name in film}
+    return film.assign(changed | {"lambda_ratio": xr.full_like(film["lambda_ratio"], ratio)})

@@ -24,6 +24,11 @@ _MODELS = (
 """Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
 _LENGTHS = ("longest_wavelength", "shortest_wavelength")
 _LAYER = ("critical_thickness", "shear_strength")
+_PARTS = {
+    "roughness": (rollers.Roughness, (*_MODELS[2], *_LENGTHS, "points")),
+    "boundary_layer": (rollers.BoundaryLayer, _LAYER),
+}
+"""Parts of a study, each with its class and the arguments that it sets."""
 
 
 class Rollers:
@@ -141,48 +146,20 @@ class Rollers:
         resistivity: str = "0.2 uohm*m",
     ) -> None:
         given = dict(locals())
-        parts = {"roughness": rollers.Roughness, "boundary_layer": rollers.BoundaryLayer}
-        for name, kind in parts.items():
-            if not isinstance(given[name], kind | None):
-                needed = f"need a lube.stages.{kind.__name__}"
-                needed += "; did you mean rms_roughness or ra_roughness?" * (name == "roughness")
-                raise StudyError(f"Rollers: {name}: got {shown(given[name])}, {needed}")
-        _one_of_two(given, roughness, "roughness", (*_MODELS[2], *_LENGTHS, "points"))
-        _one_of_two(given, boundary_layer, "boundary_layer", _LAYER)
-        first, heights, waves = ({name: given[name] for name in names} for names in _MODELS)
-        if not isinstance(second, Mapping | None):
-            needed = "need a dict of the values that differ, such as {'radius': '30 mm'}"
-            raise StudyError(f"Rollers: second: got {shown(second)}, {needed}")
-        own = dict(second or {})
-        other = first | ({} if heights.keys() & own.keys() else heights) | own
-        pair = {
-            "length": _metres("length", length),
-            "first": validate(rollers.Roller, first | heights, "Rollers", StudyError),
-            "second": validate(rollers.Roller, other, "Rollers: second", StudyError),
-            "composite_rms_roughness": composite_rms_roughness,
-        }
-        self.pair = validate(rollers.RollerPair, pair, "Rollers", StudyError)
+        _check_parts(given)
+        self.given_pair = _pair(given)
         layer = {name: given[name] for name in _LAYER}
         self.layer = boundary_layer or validate(rollers.BoundaryLayer, layer, "Rollers", StudyError)
         self.resistivity = math.nan
         if resistivity != rollers.INSULATOR:
             self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
-        # Lengths only: a study's other choices depend on its grid.
-        waves |= {name: _metres(name, given[name]) for name in _LENGTHS}
-        if lay_ratio is None:  # not stated
-            del waves["lay_ratio"]
-        if points is None:
-            shortest = parse_quantity(waves["shortest_wavelength"], "m")
-            points = rollers.grid_points(self.pair.first.radius, shortest)
-        waves |= {"points": points, "height_step": "1 pm"}
-        shared = roughness or validate(rollers.Roughness, waves, "Rollers", StudyError)
-        if shared.longest_wavelength == rollers.AUTOMATIC_WAVELENGTH:
+        self.roughness = roughness or _roughness(given, self.given_pair.first.radius)
+        if self.roughness.longest_wavelength == rollers.AUTOMATIC_WAVELENGTH:
             came = f"got {rollers.AUTOMATIC_WAVELENGTH!r}, need a length"
             raise StudyError(f"Rollers: roughness.longest_wavelength: {came}")
-        self.lines = line_spec(self.pair, shared, largest_force=math.nan)
-        self.roughness, self.given_pair = shared, self.pair
-        self.band = band_in_words(self.pair, shared, self.lines)
-        self.pair = self.pair.with_rms_heights(self.lines.rms_height)
+        self.lines = line_spec(self.given_pair, self.roughness, largest_force=math.nan)
+        self.band = band_in_words(self.given_pair, self.roughness, self.lines)
+        self.pair = self.given_pair.with_rms_heights(self.lines.rms_height)
         if not self.lines.is_drawn:
             raise StudyError(
                 "Rollers: topography.use: got a measured line, need 'spectrum': an answer is a "
@@ -201,13 +178,51 @@ class Rollers:
         return f"<Rollers: radii {radii} mm, rms roughness {rms} um, {length}, {self.band}>"
 
 
-def _one_of_two(given, model, name, short):
-    """Refuse single arguments if a part of a study, which has their values, is given too."""
+def _check_parts(given):
+    """Refuse parts of a study of another class, and single arguments together with such a part."""
+    for name, (kind, _) in _PARTS.items():
+        if not isinstance(given[name], kind | None):
+            needed = f"need a lube.stages.{kind.__name__}"
+            needed += "; did you mean rms_roughness or ra_roughness?" * (name == "roughness")
+            raise StudyError(f"Rollers: {name}: got {shown(given[name])}, {needed}")
     usual = inspect.signature(Rollers).parameters
-    for argument in short if model is not None else ():
-        if given[argument] != usual[argument].default:
-            came = f"{argument}: got {shown(given[argument])} together with `{name}`"
-            raise StudyError(f"Rollers: {came}, which sets it, need only one of the two")
+    for name, (_, arguments) in _PARTS.items():
+        for argument in arguments if given[name] is not None else ():
+            if given[argument] != usual[argument].default:
+                came = f"{argument}: got {shown(given[argument])} together with `{name}`"
+                raise StudyError(f"Rollers: {came}, which sets it, need only one of the two")
+
+
+def _pair(given):
+    """Geometry, material and heights of both rollers as given."""
+    first, heights = ({name: given[name] for name in names} for names in _MODELS[:2])
+    second = given["second"]
+    if not isinstance(second, Mapping | None):
+        needed = "need a dict of the values that differ, such as {'radius': '30 mm'}"
+        raise StudyError(f"Rollers: second: got {shown(second)}, {needed}")
+    own = dict(second or {})
+    other = first | ({} if heights.keys() & own.keys() else heights) | own
+    pair = {
+        "length": _metres("length", given["length"]),
+        "first": validate(rollers.Roller, first | heights, "Rollers", StudyError),
+        "second": validate(rollers.Roller, other, "Rollers: second", StudyError),
+        "composite_rms_roughness": given["composite_rms_roughness"],
+    }
+    return validate(rollers.RollerPair, pair, "Rollers", StudyError)
+
+
+def _roughness(given, radius):
+    """Roughness of rollers by single arguments; `radius` is that of the first roller."""
+    waves = {name: given[name] for name in (*_MODELS[2], "points")}
+    # Lengths only: a study's other choices depend on its grid.
+    waves |= {name: _metres(name, given[name]) for name in _LENGTHS}
+    if waves["lay_ratio"] is None:  # not stated
+        del waves["lay_ratio"]
+    if waves["points"] is None:
+        shortest = parse_quantity(waves["shortest_wavelength"], "m")
+        waves["points"] = rollers.grid_points(radius, shortest)
+    waves["height_step"] = "1 pm"
+    return validate(rollers.Roughness, waves, "Rollers", StudyError)
 
 
 def _metres(name, length):

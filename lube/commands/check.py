@@ -52,13 +52,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     counts["lubricant"] = len(study.lubricants)
     points = math.prod(counts.values())
     usable, total, refused = _records(study)
-    grid = study.operating_grid
-    oil = lubricant_table(study.lubricants, grid.temperature)
-    model = study.film_model | {"answered_lines": None}
-    spec, rollers, formulas = study.line_spec, study.rough_rollers, study.film_formulas[:1]
-    film = film_table(
-        oil, rollers, grid.force, grid.speed, formulas, slide_to_roll_ratio=study.slips, **model
-    )
+    film, spec, rollers = _film(study), study.line_spec, study.rough_rollers
     summary = render(
         "check.txt",
         study=study,
@@ -77,6 +71,20 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
         ],
     )
     return summary.splitlines(), refused
+
+
+def _film(study):
+    """Film table by the study's first formula, without the oil's answer to lines."""
+    grid = study.operating_grid
+    return film_table(
+        lubricant_table(study.lubricants, grid.temperature),
+        study.rough_rollers,
+        grid.force,
+        grid.speed,
+        study.film_formulas[:1],
+        slide_to_roll_ratio=study.slips,
+        **study.film_model | {"answered_lines": None},
+    )
 
 
 def _own_remarks(path, study, changes):

@@ -78,29 +78,14 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     film, tail, uncertain = map(datasets.get, ("film", "tail", "sensitivity"))
     levels = {name: tail[name].values.tolist() for name in (*CHOICES, MODEL) if name in tail.dims}
     traces = _traces(datasets, levels)
-    marks = {"deformed": _deformed(film, tail), "rubbing": rubbing(film)}
-    if "contact" in datasets:
-        contact = datasets["contact"]
-        marks |= {"overloaded": overloaded(contact), "merged": merged(contact, film)}
-        marks["separated"] = separated(film)
     return {
         "study": film.attrs["study"],
         "levels": {
             name: {"values": values, "names": level_names(name, values)}
             for name, values in levels.items()
         },
-        "variables": {
-            page_name(kind, name): _variable(datasets[kind][name], kind)
-            for kind, names in SHOWN.items()
-            if kind in datasets
-            for name in names
-        }
-        | _load_shares(datasets)
-        | _pair_limits(tail),
-        "marks": {
-            name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
-            for name, where in marks.items()
-        },
+        "variables": _variables(datasets) | _load_shares(datasets) | _pair_limits(tail),
+        "marks": _marks(film, tail, datasets.get("contact")),
         "factors": [] if uncertain is None else uncertain["factor"].values.tolist(),
         "sampled": not tail.attrs["remarks"],
         "regimes": film["regime"].attrs["flag_meanings"].split(),
@@ -112,6 +97,18 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         "records": _records(datasets["comparison"]) if "comparison" in datasets else NO_RECORDS,
         "conducts": any(one["conducts"] for one in traces),
         "traces": traces,
+    }
+
+
+def _marks(film, tail, contact):
+    """Describe the points where the model does not hold, by what it leaves out."""
+    marks = {"deformed": _deformed(film, tail), "rubbing": rubbing(film)}
+    if contact is not None:
+        marks |= {"overloaded": overloaded(contact), "merged": merged(contact, film)}
+        marks["separated"] = separated(film)
+    return {
+        name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
+        for name, where in marks.items()
     }
 
 
@@ -152,6 +149,16 @@ def level_names(name: str, values: list) -> list[str]:
     unit = COORDINATES[name].units
     rounded = [value if value == round(value) else float(f"{value:.4g}") for value in values]
     return [with_unit(value, "" if unit == "1" else unit) for value in rounded]
+
+
+def _variables(datasets):
+    """Describe the variables `SHOWN` of the datasets that the study has."""
+    return {
+        page_name(kind, name): _variable(datasets[kind][name], kind)
+        for kind, names in SHOWN.items()
+        if kind in datasets
+        for name in names
+    }
 
 
 def _variable(array, kind):

@@ -60,27 +60,16 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str, is_heated: bool = 
         for name, columns in COLUMNS.items()
     }
     figures = draw(content, datasets, sources)
-    arguments = {"controls": controls, "sources": sources, "figures": figures}
-    react = models.CustomJS.from_file(_TEMPLATES / "explorer.mjs", **arguments)
-    for name, control in controls.items():
-        control.js_on_change("active" if name == "along" else "value", react)
-    for name in ("along", "grid", "force"):
-        sources[name].selected.js_on_change("indices", react)
-    places = {f"control-{name}": control for name, control in controls.items()}
-    places |= {f"figure-{name}": plot for name, plot in figures.items()}
-    document = Document(theme=Theme(filename=_TEMPLATES / "theme.yaml"))
-    document.js_on_event("document_ready", react)
-    with document.models.freeze():  # otherwise Bokeh counts all models again for every root
-        for place, model in places.items():
-            model.name = place
-            document.add_root(model)
+    document = _document(controls, sources, figures)
     # As `bokeh.embed.components` does, but with names instead of random numbers.
-    places = {model.id: place for place, model in places.items()}
+    places = {model.id: model.name for model in document.roots}
     items = [{"docid": "explorer", "roots": places, "root_ids": list(places)}]
     return render(
         "explorer.html",
         package="lube.explorer",
-        **arguments,
+        controls=controls,
+        sources=sources,
+        figures=figures,
         title=datasets["film"].attrs["title"].rpartition(", ")[0],
         content=content,
         names=_NAMES,
@@ -116,6 +105,26 @@ def _controls(levels, start):
             labels=[_NAMES[name] for name in several], active=first, tags=several, **common
         )
     return controls
+
+
+def _document(controls, sources, figures):
+    """Bokeh's document of controls and figures, which answer each other by ``explorer.mjs``."""
+    react = models.CustomJS.from_file(
+        _TEMPLATES / "explorer.mjs", controls=controls, sources=sources, figures=figures
+    )
+    for name, control in controls.items():
+        control.js_on_change("active" if name == "along" else "value", react)
+    for name in ("along", "grid", "force"):
+        sources[name].selected.js_on_change("indices", react)
+    places = {f"control-{name}": control for name, control in controls.items()}
+    places |= {f"figure-{name}": plot for name, plot in figures.items()}
+    document = Document(theme=Theme(filename=_TEMPLATES / "theme.yaml"))
+    document.js_on_event("document_ready", react)
+    with document.models.freeze():  # otherwise Bokeh counts all models again for every root
+        for place, model in places.items():
+            model.name = place
+            document.add_root(model)
+    return document
 
 
 def _script(value):

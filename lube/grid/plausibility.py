@@ -101,22 +101,21 @@ def remarks(film: xr.Dataset, lines, rollers, models: Sequence[str] = ("line",))
     at which steel begins to yield.
     """
     film = film.isel(film_formula=0, missing_dims="ignore")
+    # No line stands for surfaces whose ridges run along rolling.
+    of_lines = "line" in models and lines.follows_rolling
+    found = _unusual(film, lines, rollers, of_lines) | _beyond_model(film, rollers, of_lines)
+    return [text for text, is_so in found.items() if is_so]
+
+
+def _unusual(film, lines, rollers, of_lines):
+    """Remarks on values that may be mistakes, each with whether it applies."""
     moduli = rollers.first.young_modulus, rollers.second.young_modulus
     widths, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
     width, widest = widths.min().item(), widths.max().item()
     pressure = film["hertz_pressure"].max().item()
     films = film["film_thickness"]
     waves, points = width / shortest, shortest / lines.spacing
-    share = expected_load_share(film, rollers)
-    # No line stands for surfaces whose ridges run along rolling.
-    of_lines = "line" in models and lines.follows_rolling
-    loaded, overloaded = (int((share > part).sum()) * of_lines for part in (0.1, 1.0))
-    apart = int(separated(film).sum()) * of_lines
-    carried = film.get("surface_load_share", xr.zeros_like(films))
-    rubs, overrubs = (int((carried > part).sum()) for part in (0.1, 1.0))
-    more, most = (f"at {n} more than all of it, " if n else "" for n in (overloaded, overrubs))
-    bends = int((deformed(film) | deformed(film, film)).sum())  # lines or surfaces
-    found = {
+    return {
         f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel "
         "210 GPa": min(moduli) < 1e9 or max(moduli) > 1.2e12,
         f"Hertz pressure: up to {with_unit(pressure, 'Pa', 3)}; gears and bearings have less than "
@@ -133,6 +132,19 @@ def remarks(film: xr.Dataset, lines, rollers, models: Sequence[str] = ("line",))
         "boundary layer breaks, so contact will be underestimated": shortest > 5e-6,
         f"grid: {points:.3g} points in the shortest wave; the curvature of asperities needs "
         "10": of_lines and points < 10.0 * (1.0 - 1e-6),
+    }
+
+
+def _beyond_model(film, rollers, of_lines):
+    """Remarks on operating points beyond the limits of the model, each with their number."""
+    share = expected_load_share(film, rollers)
+    loaded, overloaded = (int((share > part).sum()) * of_lines for part in (0.1, 1.0))
+    apart = int(separated(film).sum()) * of_lines
+    carried = film.get("surface_load_share", xr.zeros_like(share))
+    rubs, overrubs = (int((carried > part).sum()) for part in (0.1, 1.0))
+    more, most = (f"at {n} more than all of it, " if n else "" for n in (overloaded, overrubs))
+    bends = int((deformed(film) | deformed(film, film)).sum())  # lines or surfaces
+    return {
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
         f"more than a tenth of the load, {more}where the film of smooth rollers is less "
         "certain": loaded,
@@ -145,7 +157,6 @@ def remarks(film: xr.Dataset, lines, rollers, models: Sequence[str] = ("line",))
         f"{SEPARATING_RATIO}; lines that touch there by the linear response may be kept apart by "
         "the oil, whose response is not linear": apart,
     }
-    return [text for text, unlikely in found.items() if unlikely]
 
 
 def _range(values, unit=""):

@@ -81,14 +81,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     film, comparison = map(results.get, ("film", "comparison"))
     first = {"film_formula": study.film_formulas[0]}
     lines = results["contact"] if "line" in study.contact_model else None
-    known = {"line": _of_lines, "surface": _of_surfaces}
-    contacts = {model: known[model](study, results) for model in study.contact_model}
-    if "sensitivity" in results:
-        contacts = {
-            model: _assumed(each, model, study, results["sensitivity"])
-            for model, each in contacts.items()
-        }
-    compared = study.contact_model if study.compares_surfaces else ("line",)
+    contacts = {model: _of_model(model, study, results) for model in study.contact_model}
     return render(
         "findings.md",
         study=study,
@@ -103,12 +96,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         deformed={model: _deformed(model, film, results, first) for model in contacts},
         separated=_separated(film, contacts, first),
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
-        traces=[
-            # A simulated rig may run with lines.
-            _trace(point, film, model, each, comparison if model in compared else None)
-            for point in study.trace_points
-            for model, each in contacts.items()
-        ],
+        traces=_traces(study, film, contacts, comparison),
         refused=_lines(results, "refused"),
         remarks=_lines(results, "remarks"),
     )
@@ -177,6 +165,14 @@ def _spread(film, contact, first):
         "valid": _largest_excess(valid),
         "probability": there,
     }
+
+
+def _of_model(model, study, results):
+    """Probabilities by one contact model, with the band of the assumptions if it was made."""
+    contact = {"line": _of_lines, "surface": _of_surfaces}[model](study, results)
+    if "sensitivity" in results:
+        contact = _assumed(contact, model, study, results["sensitivity"])
+    return contact
 
 
 def _of_lines(study, results):
@@ -266,6 +262,17 @@ def _gauged(gauge):
 def _at(variable, point):
     """Select a point along those of its coordinates that are dimensions of the values."""
     return variable.sel({name: level for name, level in point.items() if name in variable.dims})
+
+
+def _traces(study, film, contacts, comparison):
+    """Values at each operating point with a trace, by each contact model."""
+    # A simulated rig may run with lines.
+    compared = study.contact_model if study.compares_surfaces else ("line",)
+    return [
+        _trace(point, film, model, each, comparison if model in compared else None)
+        for point in study.trace_points
+        for model, each in contacts.items()
+    ]
 
 
 def _trace(point, film, model, contact, comparison):

@@ -180,18 +180,7 @@ class Deviating:
 
     def _film(self, values, points, formula, heating, **shape):
         """Film of samples with the same film formula and model of inlet heating."""
-        study = self.study
-        # Beyond the data the logarithms go on in a straight line, over a few kelvin at most.
-        beyond = {"fill_value": "extrapolate"}
-        temperature = points["temperature"] + values.get("temperature", 0.0)
-        oil = self.oils.interp(temperature=temperature, kwargs=beyond).drop_vars("temperature")
-        oil = np.exp(oil.sel(lubricant=points["lubricant"]))
-        for name, key in (("viscosity", OIL[0]), ("pressure_viscosity_coefficient", OIL[1])):
-            oil[key] = oil[key] * (1.0 + values.get(name, 0.0))
-        if "pressure_viscosity_definition" in values:
-            chosen = oil["slope_ratio"].isel(definition=values["pressure_viscosity_definition"])
-            oil = oil.drop_vars("slope_ratio").assign({OIL[1]: oil[OIL[1]] * chosen})
-        oil[OIL[0]] = oil[OIL[0]] * points.get("viscosity_factor", 1.0)
+        study, oil = self.study, self._oil(values, points)
         loads = points["force"] * (1.0 + values.get("force", 0.0))
         speeds = points["speed"] * (1.0 + values.get("speed", 0.0))
         table = film_at(
@@ -215,6 +204,21 @@ class Deviating:
                 table, 1.0 / table["roughness_factor"], shape.get("with_shape", False)
             )
         return table
+
+    def _oil(self, values, points):
+        """Properties of the oils at the temperatures of the samples."""
+        # Beyond the data the logarithms go on in a straight line, over a few kelvin at most.
+        beyond = {"fill_value": "extrapolate"}
+        temperature = points["temperature"] + values.get("temperature", 0.0)
+        oil = self.oils.interp(temperature=temperature, kwargs=beyond).drop_vars("temperature")
+        oil = np.exp(oil.sel(lubricant=points["lubricant"]))
+        for name, key in (("viscosity", OIL[0]), ("pressure_viscosity_coefficient", OIL[1])):
+            oil[key] = oil[key] * (1.0 + values.get(name, 0.0))
+        if "pressure_viscosity_definition" in values:
+            chosen = oil["slope_ratio"].isel(definition=values["pressure_viscosity_definition"])
+            oil = oil.drop_vars("slope_ratio").assign({OIL[1]: oil[OIL[1]] * chosen})
+        oil[OIL[0]] = oil[OIL[0]] * points.get("viscosity_factor", 1.0)
+        return oil
 
     def _rollers(self, values, points):
         """Return the rollers as far as films depend on them, with values for each run."""

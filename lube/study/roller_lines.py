@@ -89,23 +89,10 @@ def _rough_line(rollers, roughness, name, rms, spacing, width):
     _check_band(longest, shortest, roll_off, roughness.points, spacing, key)
     _check_distribution(own, key)
     if roller.topography:
-        with located(f"rollers.{name}.topography", StudyError):
-            grid = points, spacing, (longest, shortest)
-            shape = roller.topography.line(grid, width, roughness.height_step)
-            shape["isotropic"] = roller.topography.texture != "along rolling"
-            if name == "second" and "lay_angle" in shape:
-                # Either map is seen from outside its roller, both surfaces from the second roller.
-                shape["lay_angle"] = from_other_side(shape["lay_angle"])
-    elif own.hurst_exponent is None:
-        raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
+        grid = points, spacing, (longest, shortest)
+        shape = _measured(roller.topography, name, grid, width, roughness.height_step)
     else:
-        cutoffs = own.long_cutoff, own.short_cutoff
-        _check_cutoffs(cutoffs, longest, shortest, key)
-        kept = beyond_cutoffs(
-            own.hurst_exponent, longest, shortest, cutoffs, own.roll_off_wavelength
-        )
-        shape = {"rms_height": rms * kept, "hurst_exponent": own.hurst_exponent}
-        shape |= {"long_cutoff": cutoffs[0], "short_cutoff": cutoffs[1]} | _lay(own, key)
+        shape = _stated(own, key, name, rms, longest, shortest)
     _check_perimeter(points * spacing, longest * shape.get("lay_ratio", 1.0), shortest, name)
     _check_height_step(shape["rms_height"], roughness.height_step, name, roller)
     return RoughLine(
@@ -123,6 +110,28 @@ def _key(roller, own, name):
     """Name the key that set a value of the roughness: the roller's, else the study's."""
     is_own = getattr(own, name, None) is not None
     return f"rollers.{roller}.roughness.{name}" if is_own else f"roughness.{name}"
+
+
+def _measured(topography, name, grid, width, height_step):
+    """Height, spectrum and lay of a roller's line, from its measured topography."""
+    with located(f"rollers.{name}.topography", StudyError):
+        shape = topography.line(grid, width, height_step)
+        shape["isotropic"] = topography.texture != "along rolling"
+        if name == "second" and "lay_angle" in shape:
+            # Either map is seen from outside its roller, both surfaces from the second roller.
+            shape["lay_angle"] = from_other_side(shape["lay_angle"])
+    return shape
+
+
+def _stated(own, key, name, rms, longest, shortest):
+    """Height, spectrum and lay of a roller's line, as the study states them."""
+    if own.hurst_exponent is None:
+        raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
+    cutoffs = own.long_cutoff, own.short_cutoff
+    _check_cutoffs(cutoffs, longest, shortest, key)
+    kept = beyond_cutoffs(own.hurst_exponent, longest, shortest, cutoffs, own.roll_off_wavelength)
+    shape = {"rms_height": rms * kept, "hurst_exponent": own.hurst_exponent}
+    return shape | {"long_cutoff": cutoffs[0], "short_cutoff": cutoffs[1]} | _lay(own, key)
 
 
 def _lay(own, key):
