@@ -8,4 +8,4 @@ lists the names.
 from lube.lazy import attach
 
 __version__ = "0.2.0"
-__getattr__, __dir__ = attach("lube")
+__getattr__, __dir__ = attach("lube", "stages", "types")

@@ -1,5 +1,7 @@
 """The public names of `lube`: answers with units, and the results of studies."""
 
+from lube import stages as stages
+from lube import types as types
 from lube.archive.explain import explain as explain
 from lube.calculator.answers import Answer as Answer
 from lube.calculator.choices import COMPLETE as COMPLETE

@@ -36,13 +36,15 @@ def homes(package: str) -> dict[str, str]:
     }
 
 
-def attach(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
+def attach(package: str, *modules: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
     """Return ``__getattr__`` and ``__dir__`` for a package whose names are imported on first use.
 
     Parameters
     ----------
     package : str
         As in `homes`.
+    *modules : str
+        Modules of the package that are imported on first use, too.
 
     Returns
     -------
@@ -51,8 +53,10 @@ def attach(package: str) -> tuple[Callable[[str], object], Callable[[], list[str
     """
 
     def getter(name):
+        if name in modules:
+            return importlib.import_module(f"{package}.{name}")
         if name not in homes(package):
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         return getattr(importlib.import_module(homes(package)[name]), name)
 
-    return getter, lambda: sorted(homes(package))
+    return getter, lambda: sorted([*homes(package), *modules])

@@ -118,10 +118,12 @@ def test_what_is_imported_at_every_start_is_light(statement, heavy):
     assert not loaded_after(statement) & heavy
 
 
-@pytest.mark.parametrize("package", [lube, lube.stages])
-def test_every_public_name_resolves_and_explains_itself(package):
+@pytest.mark.parametrize(
+    ("package", "modules"), [(lube, ["stages", "types"]), (lube.stages, [])], ids=["lube", "stages"]
+)
+def test_every_public_name_resolves_and_explains_itself(package, modules):
     known = homes(package.__name__)
-    assert dir(package) == sorted(known)
+    assert dir(package) == sorted([*known, *modules])
     for name, home in known.items():
         public = getattr(package, name)
         if callable(public):

@@ -32,7 +32,9 @@ def checked(function: _Function) -> _Function:
 
     If it takes long, it shows its progress.
     """
-    signature, owner = inspect.signature(function), function.__qualname__.split(".")[0]
+    # Annotations are texts, so that `help` shows short names of types.
+    signature = inspect.signature(function, eval_str=True)
+    owner = function.__qualname__.split(".")[0]
     parameters = signature.parameters
 
     @functools.wraps(function)

@@ -1,5 +1,7 @@
 """Probability of contact at operating points."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Duty cycles: the answer at each duty point, and the weighted mean over the cycle."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

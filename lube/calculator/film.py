@@ -1,5 +1,7 @@
 """Film at operating points."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any
 

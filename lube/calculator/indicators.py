@@ -1,5 +1,7 @@
 """Indicators that engineers know, at operating points."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import xarray as xr

@@ -1,5 +1,7 @@
 """The oil of an answer, from a lubricant record or from numbers with units."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 

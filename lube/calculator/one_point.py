@@ -1,5 +1,7 @@
 """Answers at one operating point, along the time or across the contact: trace and profile."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from lube import types

@@ -1,5 +1,7 @@
 """What a record at some operating points would tell."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np

@@ -6,6 +6,8 @@ rollers. The oil carries the whole load unless asked otherwise: films that keep 
 little to asperities.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

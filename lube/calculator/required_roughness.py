@@ -1,5 +1,7 @@
 """The roughness that keeps contact rare."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace

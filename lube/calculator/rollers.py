@@ -1,5 +1,7 @@
 """The rollers of an answer, from numbers with units."""
 
+from __future__ import annotations
+
 import inspect
 import math
 from collections.abc import Mapping
