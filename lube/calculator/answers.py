@@ -1,5 +1,7 @@
 """Answers of the calculator: labelled datasets in customary units, with tables and plots."""
 
+import html
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +23,8 @@ _CUSTOMARY = {
     "reduced_modulus": ("GPa", 1e-9),
 }
 """By SI unit, or by variable: the customary unit, and how many of it are one SI unit."""
+_SHOWN = 3
+"""Points at the beginning and at the end of an answer that are shown."""
 _TAIL, _ASSUMED = "by importance sampling", "5 to 95 % over what is not known exactly"
 _OF_NO_FILE = pd.read_csv(Path(__file__).with_name("names.csv"))
 """Name, long name and SI unit of the variables that no file has."""
@@ -92,6 +96,26 @@ class Answer(xr.Dataset):
 
     __slots__ = ()
 
+    def __repr__(self) -> str:
+        """Show every value of the first and last points with its unit, and the remarks."""
+        if self._is_empty:
+            return super().__repr__()
+        sizes = ", ".join(f"{name} {size}" for name, size in self.sizes.items())
+        lines = [f"<Answer: {sizes}>" if sizes else "<Answer>"]
+        width = shutil.get_terminal_size().columns
+        lines += [one.to_string(header=False, line_width=width) for one in self._in_words()]
+        return "\n".join([*lines, self.attrs.get("remarks", "")]).rstrip()
+
+    def _repr_html_(self) -> str:
+        """Show the same in a notebook, above the dataset."""
+        if self._is_empty:
+            return super()._repr_html_()
+        lines = [one.to_html(header=False) for one in self._in_words()]
+        lines += [
+            f"<p>{html.escape(line)}</p>" for line in self.attrs.get("remarks", "").split("\n")
+        ]
+        return "\n".join([*lines, super()._repr_html_()])
+
     @property
     def plot(self) -> _Plots:
         """Draw the answer: ``plot()``, or ``plot(x=..., y=...)``.
@@ -115,14 +139,49 @@ class Answer(xr.Dataset):
             Columns are named with their units, such as ``force [N]``. The single realisations and
             the values of a whole duty cycle are left out.
         """
+        return self._rows().rename(columns=self._header)
+
+    def _rows(self):
+        """Make the table, with names without units."""
         whole = [name for name in self if name.startswith("whole_")]
         rows = self.drop_vars(whole).drop_dims("realisation", errors="ignore")
-        frame = (rows if rows.sizes else rows.expand_dims("point")).to_dataframe()
-        return frame.reset_index(drop=not rows.sizes).rename(columns=self._header)
+        frame = (rows if rows.sizes else rows.reset_coords().expand_dims("point")).to_dataframe()
+        return frame.reset_index(drop=not rows.sizes)
+
+    @property
+    def _is_empty(self):
+        return not self.variables or 0 in self.sizes.values()
+
+    def _in_words(self):
+        """Make texts of the points, and of a whole duty cycle if it is one, a row a variable."""
+        rows = self._rows()
+        has_more = len(rows) > 2 * _SHOWN
+        if has_more:
+            rows = pd.concat([rows.head(_SHOWN), rows.tail(_SHOWN)])
+        points = self._with_limits(rows)
+        if has_more:
+            points.insert(_SHOWN, "more", "...")
+        whole = {name: [self[name].item()] for name in self if name.startswith("whole_")}
+        return [points, self._with_limits(pd.DataFrame(whole))] if whole else [points]
+
+    def _with_limits(self, frame):
+        """Make texts of values, with their limits in brackets; names get their units."""
+        digits = frame.map(_digits)
+        limits = {name: [name.removesuffix("_mean") + end for end in LIMITS[1:]] for name in frame}
+        limits = {name: ends for name, ends in limits.items() if set(ends) <= set(frame)}
+        for name, (lower, upper) in limits.items():
+            digits[name] += " (" + digits[lower] + " to " + digits[upper] + ")"
+        digits = digits.drop(columns=[one for ends in limits.values() for one in ends])
+        return digits.rename(columns=self._header).T
 
     def _header(self, name):
         units = self[name].attrs.get("units", "")
         return name if units in ("", "1") else f"{name} [{units}]"
+
+
+def _digits(value):
+    """Four digits of a number, or any other value as it is."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def described(results: xr.Dataset) -> Answer:

@@ -143,3 +143,34 @@ def test_what_cannot_be_drawn_is_refused_in_one_line(cycle, choice):
         cycle.plot(**choice)
     with pytest.raises(lube.LubeError, match="plot: got"):
         cycle.isel(point=0).plot()
+
+
+def test_what_is_shown_has_units_intervals_and_remarks(found, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    point = found.sel(force=400.0, temperature=60.0)
+    lines = repr(point.assign_attrs(remarks="the contact\nis & stays narrow")).splitlines()
+    assert lines[0] == "<Answer: realisation 2>" and lines[-2:] == [
+        "the contact",
+        "is & stays narrow",
+    ]
+    shown = {line.split("  ")[0]: line.split("  ")[-1].strip() for line in lines[1:-2]}
+    assert shown["film_thickness [um]"] == f"{point.film_thickness.item():.4g}"
+    name = "tail_breakthrough_probability"
+    limits = [point[f"{name}{end}"].item() for end in ("", "_lower", "_upper")]
+    assert shown[name] == "{:.4g} ({:.4g} to {:.4g})".format(*limits)
+    assert "breakthrough_probability_mean" in shown and f"{name}_lower" not in shown
+    page = point.assign_attrs(remarks="is & stays narrow")._repr_html_()
+    assert shown[name] in page and "<p>is &amp; stays narrow</p>" in page
+
+
+def test_first_and_last_points_are_shown(found, cycle, rollers, oil, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "400")
+    forces = [line.split()[2:] for line in repr(found).splitlines() if line.startswith("force")]
+    assert forces == [["100", "400"] * 3]
+    trace = lube.trace(rollers, oil, "400 N", "100 rpm", "60 degC")
+    (time,) = (line.split()[2:] for line in repr(trace).splitlines() if line.startswith("time"))
+    assert len(time) == 7 and time[0] == "0" and time[3] == "..."
+    assert "\nwhole_tail_rate [h-1] " in repr(cycle)
+    assert repr(found[[]]).startswith("<Answer>\nlubricant")
+    for empty in (lube.Answer(), found.isel(force=[])):
+        assert repr(empty).startswith("<xarray.Answer>") and "xarray.Answer" in empty._repr_html_()
