@@ -228,11 +228,11 @@ def surface_grid(
         times = side / spacing / LARGEST
         if times > 1.0:
             lay = ", or shorter ridges" * any(line.lay_ratio > 1.0 for line in spec.lines)
-            # The side decreases with the longest wave, unless the contact is too wide for any.
+            # The side decreases with the longest wave, unless the contact is too wide for most.
             most = min(side / times / waves, side / times - width) / longest
             own = max(2.0 * math.pi / line.q_min for line in spec.lines)
             # Rounded down, so that the length does.
-            shorter = f", or a longest of {995.0 * most * own:.3g} mm" if most > 0.0 else ""
+            shorter = f", or a longest of {995.0 * most * own:.3g} mm" if most > 0.1 else ""
             raise DataError(
                 f"roughness: got a shortest wavelength of {1e6 * shortest:.3g} µm, too short for a "
                 f"surface of {1e3 * side:.3g} mm, need one {times:.3g} times as long{lay}{shorter}"
