@@ -1,6 +1,7 @@
 """The band of an answer over quantities that are not known exactly."""
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import asdict
 from pathlib import Path
 
@@ -77,9 +78,7 @@ class Assumptions:
         if uncertain.resistivity:
             came = "resistivity: got a range, on which no probability depends"
             raise StudyError(f"bands: {came}, need none")
-        for factor in uncertain.factors():
-            if factor.name in left_out or factor.group in left_out:
-                uncertain = uncertain.model_copy(update={factor.name: None})
+        uncertain = _without(uncertain, left_out)
         if self.wanted and not uncertain.factors():
             needed = "need an uncertain quantity or choice on which the answer depends"
             raise StudyError(f"bands: got {' and '.join(ranges) or 'none'}, {needed}")
@@ -154,6 +153,28 @@ class Assumptions:
         found = run_all(deviating, unit, runs).reshape(count, *force.shape)
         return force.expand_dims(sample=count).copy(data=found)
 
+    def log_deviation(self, points: Mapping[str, Values], left_out: Sequence[str]) -> xr.DataArray:
+        """Find the standard deviation of the logarithm of the probability over all samples.
+
+        Parameters
+        ----------
+        points : mapping
+            As in `probabilities`.
+        left_out : sequence of str
+            Factors, or groups of them, that are taken as known.
+
+        Returns
+        -------
+        xarray.DataArray
+            Over the dimensions of the points; 0 if nothing else is uncertain.
+        """
+        other, uncertain = copy(self), _without(self._study.uncertainty, left_out)
+        if not uncertain.factors():
+            return xr.zeros_like(xr.broadcast(*map(xr.DataArray, points.values()))[0])
+        other._study = self._study.model_copy(update={"uncertainty": uncertain})
+        with np.errstate(divide="ignore"):
+            return np.log(other.probabilities(points)).std("sample")
+
     @staticmethod
     def limits(samples: xr.DataArray, name: str) -> dict[str, xr.DataArray]:
         """Name the limits below which 5 and 95 % of some samples lie."""
@@ -161,3 +182,9 @@ class Assumptions:
 
         limits = zip(LIMITS[1:], np.quantile(samples, BAND, axis=0), strict=True)
         return {f"{name}{end}": samples[0].copy(data=limit) for end, limit in limits}
+
+
+def _without(uncertain, left_out):
+    """Ranges without those of some factors, or groups of them."""
+    gone = (one.name for one in uncertain.factors() if {one.name, one.group} & set(left_out))
+    return uncertain.model_copy(update=dict.fromkeys(gone))

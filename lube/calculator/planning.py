@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,9 +11,10 @@ import xarray as xr
 from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, check_realisations, checked, one_name
+from lube.calculator.bands import Assumptions
 from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
 from lube.calculator.contact import ensemble
-from lube.calculator.film import film_in_si, of_film, with_remarks
+from lube.calculator.film import conditions, conditions_of, film_in_si, of_film, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import sample_size
@@ -27,6 +29,7 @@ from lube.physics.electrical import film_capacitance
 from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import Revolution
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
+from lube.study.uncertainty import CHOICES
 from lube.surfaces.synthetic import draw_realisation
 
 
@@ -51,6 +54,7 @@ def plan(
     threshold: types.Amount = "100 ohm",
     realisations: int = REALISATIONS,
     seed: int = SEED,
+    bands: bool | Mapping[str, Any] = False,
 ) -> Answer:
     """Expect how well a record of the contact share tells film, oil and layer.
 
@@ -78,6 +82,11 @@ def plan(
     threshold : str, sequence of str or tuple, optional
         Resistance below which that rig shows contact. An ECR meter shows the mean voltage, which
         depends on no threshold.
+    bands : bool or dict, optional
+        Whether what is not known exactly widens the intervals; ranges are as in
+        `lube.contact_probability`. The film is inferred without knowing oil, temperature and speed,
+        the coefficient and the layer's strength without their own ranges. It takes three times as
+        long as there.
 
     Returns
     -------
@@ -85,7 +94,8 @@ def plan(
         The variables of `lube.film`; ``breakthrough_probability`` by importance sampling;
         ``half_width``, the half-width of the expected interval of each ``quantity`` relative to the
         quantity, NaN where the record tells less than a factor of two; and ``reading_error``. They
-        have the dimensions turns and threshold if several are given.
+        have the dimensions turns and threshold if several are given. With `bands` also
+        ``half_width_assumed``, the half-width if the other quantities are uncertain.
 
     Raises
     ------
@@ -103,15 +113,16 @@ def plan(
     turns = amount("turns", (turns, "1"), "1", above=0.0)
     thresholds = amount("threshold", threshold, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
-    models = [model] if rig is None else list(dict.fromkeys(("line", model)))
+    models = [model] if rig is None else list(dict.fromkeys((model, "line")))
     _check_ridges(rig, model, rollers)
     gap = Gap(film_shape, roughness_deformation)
     choices = Choices.of(
         gap, models, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
     )
-    slip = choices.slip
+    slip, formula = choices.slip, one_name("film_formula", film_formula)
     check_realisations(realisations, seed)
-    formula = one_name("film_formula", film_formula)
+    assumed = Assumptions(bands, rollers, oil, choices, formula, seed)
+    assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
     table = film_in_si(rollers, oil, force, speed, temperature, formula, choices)
     reading = _reading_error(rollers, table, gap, slip, rig, thresholds.values, seed)
     records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, gap)
@@ -123,9 +134,25 @@ def plan(
         found, size, ratio = _on_lines(pair, table, realisations, slip, records)
     error = planning.relative_error(found.probability, size, ratio[:, None], reading)
     by_coefficient = _film_by_coefficient(oil, rollers, table, formula, choices.inlet_meniscus)
-    widths = planning.half_widths(found, by_coefficient, error.reshape(-1, size.size), realisations)
+    widths = {}
+    for name, deviation in _unknown(assumed, conditions_of(table, choices), table).items():
+        both = np.hypot(error.reshape(-1, size.size), deviation)
+        widths[name] = planning.half_widths(found, by_coefficient, both, realisations)
     answer = _labelled(table, turns, thresholds, found.probability, widths, reading)
     return with_remarks(answer, table, rollers, [model])
+
+
+def _unknown(assumed, points, table):
+    """Find the standard deviation of ln P by all that is not known, by the name of half-widths.
+
+    That of assumptions has the shape (quantities, 1, P).
+    """
+    found, dims = {"half_width": 0.0}, table["film_thickness"].dims
+    if assumed.wanted:
+        each = (assumed.log_deviation(points, (*one, *CHOICES)) for one in planning.GIVEN.values())
+        each = [one.broadcast_like(table["film_thickness"]).transpose(*dims) for one in each]
+        found["half_width_assumed"] = np.reshape(each, (len(each), 1, -1))
+    return found
 
 
 def _check_ridges(rig, model, rollers):
@@ -168,8 +195,9 @@ def _labelled(table, turns, thresholds, probability, widths, reading):
     answer = answer.assign_coords(turns.coords).assign_coords(thresholds.coords)
     answer["breakthrough_probability"] = film.dims, probability.reshape(film.shape)
     dims, shape = (*thresholds.dims, *film.dims), (*thresholds.shape, *film.shape)
-    widths = widths.reshape(len(planning.QUANTITIES), *turns.shape, *shape)
-    answer["half_width"] = ("quantity", *turns.dims, *dims), widths
+    for name, each in widths.items():
+        each = each.reshape(len(planning.QUANTITIES), *turns.shape, *shape)
+        answer[name] = ("quantity", *turns.dims, *dims), each
     answer["reading_error"] = dims, reading.reshape(shape)
     return answer
 

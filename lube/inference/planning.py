@@ -37,8 +37,14 @@ STEP = 0.03
 LEAST = 4.0
 """Expected number of independent contacts in a record, or of times without contact, below which it
 tells too little."""
-QUANTITIES = "film thickness", "pressure-viscosity coefficient", "layer strength"
-"""Quantities inferred from a record."""
+GIVEN = {
+    "film thickness": ("oil", "temperature", "speed"),
+    "pressure-viscosity coefficient": ("pressure_viscosity_coefficient",),
+    "layer strength": ("layer",),
+}
+"""Quantities inferred from a record: uncertain quantities, and groups of them, of which each
+inference does without."""
+QUANTITIES = tuple(GIVEN)
 _THICKER = np.array([1.0 + STEP, 1.0 - STEP, 1.0, 1.0])
 _WEAKER = _THICKER[::-1]
 """Changes of the film, and of the layer, for the slopes."""

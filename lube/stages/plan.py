@@ -21,12 +21,6 @@ from lube.types import Datasets
 
 TURNS = (0.1, 0.3, 1.0, 10.0)
 """Durations of records, in revolutions."""
-_GIVEN = {
-    "film thickness": ("oil", "temperature", "speed"),
-    "pressure-viscosity coefficient": ("pressure_viscosity_coefficient",),
-    "layer strength": ("layer",),
-}
-"""Uncertain quantities, and groups of them, of which each inference does without."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -163,8 +157,8 @@ def _assumed(sensitivity, study):
     parts = sensitivity["first_order"].clip(0.0, 1.0)
     each = zip(parts["factor"].values, sensitivity["group_of_factor"].values, strict=True)
     groups, found = dict(each), []
-    for quantity in planning.QUANTITIES:
-        given = {*_GIVEN[quantity], *CHOICES, SEED}
+    for known in planning.GIVEN.values():
+        given = {*known, *CHOICES, SEED}
         unknown = [name for name, group in groups.items() if not {name, group} & given]
         part = parts.sel(factor=unknown).sum("factor").clip(0.0, 1.0)
         found.append((total * np.sqrt(part)).transpose(*POINT_DIMS).values.ravel())

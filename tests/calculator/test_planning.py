@@ -131,3 +131,37 @@ def test_rollers_for_which_no_line_stands_have_no_rig(oil):
     ground = lube.Rollers("50 mm", "0.2 um", lay_ratio=5, lay_angle="0 deg")
     with pytest.raises(LubeError, match=r"^rig: got 'mtm-ecr' with ridges for which no line"):
         lube.plan(ground, oil, **POINT, contact_model="surface", rig="mtm-ecr")
+
+
+@pytest.mark.usefixtures("few_samples")
+def test_what_is_uncertain_widens_the_intervals_of_what_depends_on_it(rollers, oil, found):
+    kelvin = {"temperature": {"range": "+- 6 K", "source": "thermocouple"}}
+    some = lube.plan(rollers, oil, **POINT, realisations=16, turns=[0.2, 1.0], bands=kelvin)
+    assert some.half_width_assumed.dims == some.half_width.dims == ("quantity", "turns", "force")
+    np.testing.assert_array_equal(some.half_width.sel(turns=1.0), found.half_width)
+    ratio = some.half_width_assumed / some.half_width
+    # The film is inferred from the share, whatever the temperature.
+    np.testing.assert_array_equal(ratio.sel(quantity="film thickness"), 1.0)
+    # By the change of the probability over the range, and its scatter between pairs.
+    around = POINT | {"temperature": ["64 degC", "70 degC", "76 degC"]}
+    shares = lube.contact_probability(rollers, oil, **around, realisations=16)
+    cold, _, hot = np.log(shares.tail_breakthrough_probability).transpose("temperature", ...)
+    counted = shares.breakthrough_probability.sel(temperature=70.0)
+    error = counted.std("realisation", ddof=1) / counted.mean("realisation")
+    expected = (hot - cold) / np.sqrt(12.0) / error
+    widened = ratio.sel(turns=1.0, quantity="pressure-viscosity coefficient")
+    np.testing.assert_allclose(np.sqrt(widened**2 - 1.0), expected, rtol=0.2)
+
+
+@pytest.mark.parametrize(
+    ("bands", "choices", "said"),
+    [
+        ("all", {}, "bands: got 'all', need True, False or a dict of ranges"),
+        (True, {"load_sharing": "iterated"}, "bands: "),
+        ({"lambda_ratio": {"range": "+- 2 %"}}, {}, "bands: lambda_ratio"),
+    ],
+)
+def test_bands_that_a_plan_cannot_have_are_refused_in_one_line(rollers, oil, bands, choices, said):
+    with pytest.raises(LubeError) as caught:
+        lube.plan(rollers, oil, **POINT, **choices, bands=bands)
+    assert str(caught.value).startswith(said) and "\n" not in str(caught.value)
