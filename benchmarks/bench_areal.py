@@ -1,6 +1,6 @@
 """Sampled contact of surfaces: how often its intervals hold the mean over many seeds.
 
-    python benchmarks/bench_areal.py [STUDY]    # some ten minutes on two cores
+    python benchmarks/bench_areal.py [STUDY]    # some five minutes on two cores
 
 Flat films of some lambda ratios over the contact at 200 N, of a study (the paper's, if none is
 named), are sampled with `SEEDS` seeds. For contact and for breakthrough it prints the number of

@@ -1,6 +1,7 @@
 """Answers of the calculator: labelled datasets in customary units, with tables and plots."""
 
 import html
+import math
 import shutil
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from lube.physics.indicators import LOAD_SHARES, RESISTANCE_FORMULAS
-from lube.schema import COORDINATES, FILES, LIMITS, REGIMES
+from lube.schema import COORDINATES, FILES, LIMITS, POINT_DIMS, REGIMES
 
 _CUSTOMARY = {
     "m": ("um", 1e6),
@@ -97,23 +98,20 @@ class Answer(xr.Dataset):
     __slots__ = ()
 
     def __repr__(self) -> str:
-        """Show every value of the first and last points with its unit, and the remarks."""
-        if self._is_empty:
+        """Show the values of the first and last points with their units, and the remarks."""
+        if not (tables := self._in_words()):
             return super().__repr__()
         sizes = ", ".join(f"{name} {size}" for name, size in self.sizes.items())
         lines = [f"<Answer: {sizes}>" if sizes else "<Answer>"]
         width = shutil.get_terminal_size().columns
-        lines += [one.to_string(header=False, line_width=width) for one in self._in_words()]
+        lines += [one.to_string(header=False, line_width=width) for one in tables]
         return "\n".join([*lines, self.attrs.get("remarks", "")]).rstrip()
 
     def _repr_html_(self) -> str:
         """Show the same in a notebook, above the dataset."""
-        if self._is_empty:
-            return super()._repr_html_()
         lines = [one.to_html(header=False) for one in self._in_words()]
-        lines += [
-            f"<p>{html.escape(line)}</p>" for line in self.attrs.get("remarks", "").split("\n")
-        ]
+        remarks = self.attrs.get("remarks", "").splitlines()
+        lines += [f"<p>{html.escape(line)}</p>" for line in remarks]
         return "\n".join([*lines, super()._repr_html_()])
 
     @property
@@ -139,49 +137,60 @@ class Answer(xr.Dataset):
             Columns are named with their units, such as ``force [N]``. The single realisations and
             the values of a whole duty cycle are left out.
         """
-        return self._rows().rename(columns=self._header)
+        return _frame(self._points()).rename(columns=self._header)
 
-    def _rows(self):
-        """Make the table, with names without units."""
-        whole = [name for name in self if name.startswith("whole_")]
-        rows = self.drop_vars(whole).drop_dims("realisation", errors="ignore")
-        frame = (rows if rows.sizes else rows.reset_coords().expand_dims("point")).to_dataframe()
-        return frame.reset_index(drop=not rows.sizes)
+    def _points(self):
+        """Values of the points, without single realisations and values of a whole duty cycle."""
+        return self.drop_vars(self._whole()).drop_dims("realisation", errors="ignore")
 
-    @property
-    def _is_empty(self):
-        return not self.variables or 0 in self.sizes.values()
+    def _whole(self):
+        """Names of the values of a whole duty cycle."""
+        return [name for name in self if str(name).startswith("whole_")]
 
     def _in_words(self):
         """Make texts of the points, and of a whole duty cycle if it is one, a row a variable."""
-        rows = self._rows()
-        has_more = len(rows) > 2 * _SHOWN
-        if has_more:
-            rows = pd.concat([rows.head(_SHOWN), rows.tail(_SHOWN)])
-        points = self._with_limits(rows)
-        if has_more:
-            points.insert(_SHOWN, "more", "...")
-        whole = {name: [self[name].item()] for name in self if name.startswith("whole_")}
-        return [points, self._with_limits(pd.DataFrame(whole))] if whole else [points]
+        parts = self._points(), self[self._whole()].reset_coords(drop=True)
+        return [self._texts(one) for one in parts if one.data_vars and 0 not in one.sizes.values()]
 
-    def _with_limits(self, frame):
+    def _texts(self, points):
         """Make texts of values, with their limits in brackets; names get their units."""
-        digits = frame.map(_digits)
-        limits = {name: [name.removesuffix("_mean") + end for end in LIMITS[1:]] for name in frame}
-        limits = {name: ends for name, ends in limits.items() if set(ends) <= set(frame)}
+        ends = [*range(_SHOWN), *range(-_SHOWN, 0)]
+        is_long = math.prod(points.sizes.values()) > len(ends)
+        if is_long and len(points.sizes) == 1:
+            frame = _frame(points.isel(dict.fromkeys(points.sizes, ends)))
+        else:
+            frame = _frame(points).iloc[ends if is_long else slice(None)]
+        frame = frame.apply(self._digits)
+        limits = {
+            name: [f"{name}".removesuffix("_mean") + end for end in LIMITS[1:]]
+            for name in frame
+            if f"{name}_mean" not in frame
+        }
+        limits = {name: each for name, each in limits.items() if set(each) <= set(frame)}
         for name, (lower, upper) in limits.items():
-            digits[name] += " (" + digits[lower] + " to " + digits[upper] + ")"
-        digits = digits.drop(columns=[one for ends in limits.values() for one in ends])
-        return digits.rename(columns=self._header).T
+            frame[name] += " (" + frame[lower] + " to " + frame[upper] + ")"
+        frame = frame.drop(columns=[one for each in limits.values() for one in each])
+        texts = frame.rename(columns=self._header).T
+        if is_long:
+            texts.insert(_SHOWN, "more", "...")
+        return texts
+
+    def _digits(self, column):
+        """Texts of a column: four digits, more of operating conditions, which are often given."""
+        is_given = column.name in self.coords or column.name in POINT_DIMS
+        form = "{:.10g}" if is_given else "{:.4g}"
+        is_number = pd.api.types.is_float_dtype(column)
+        return column.map(form.format if is_number else str)
 
     def _header(self, name):
         units = self[name].attrs.get("units", "")
         return name if units in ("", "1") else f"{name} [{units}]"
 
 
-def _digits(value):
-    """Four digits of a number, or any other value as it is."""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+def _frame(points):
+    """Table with a row for each point."""
+    frame = (points if points.sizes else points.expand_dims("point")).to_dataframe()
+    return frame.reset_index(drop=not points.sizes)
 
 
 def described(results: xr.Dataset) -> Answer:

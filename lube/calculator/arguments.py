@@ -18,7 +18,7 @@ from lube.units import convert, parse_number, parse_quantity
 Point = Mapping[str, xr.DataArray]
 """Force, speed and temperature by name."""
 _TAKEN_BY = {
-    "bands": "only contact_probability, duty and the required_ functions take it",
+    "bands": "only contact_probability, duty, plan and the required_ functions take it",
     "contact_model": "only contact_probability, duty, trace, plan and the required_ functions do",
     "load_sharing": "the oil carries the whole load here",
     "slide_to_roll_ratio": "duty takes both surface speeds, required_film and profile no slip",

@@ -153,27 +153,37 @@ class Assumptions:
         found = run_all(deviating, unit, runs).reshape(count, *force.shape)
         return force.expand_dims(sample=count).copy(data=found)
 
-    def log_deviation(self, points: Mapping[str, Values], left_out: Sequence[str]) -> xr.DataArray:
+    def log_deviations(
+        self, points: Mapping[str, Values], left_out: Sequence[Sequence[str]]
+    ) -> list[xr.DataArray]:
         """Find the standard deviation of the logarithm of the probability over all samples.
 
         Parameters
         ----------
         points : mapping
             As in `probabilities`.
-        left_out : sequence of str
-            Factors, or groups of them, that are taken as known.
+        left_out : sequence of sequence of str
+            For each result the factors, or groups of them, that are taken as known.
 
         Returns
         -------
-        xarray.DataArray
-            Over the dimensions of the points; 0 if nothing else is uncertain.
+        list of xarray.DataArray
+            Over the dimensions of the points. 0 if nothing else is uncertain, NaN where a film of a
+            sample is not known or never touches.
         """
-        other, uncertain = copy(self), _without(self._study.uncertainty, left_out)
+        some = [_without(self._study.uncertainty, known) for known in left_out]
+        names = [tuple(factor.name for factor in one.factors()) for one in some]
+        distinct = dict(zip(names, some, strict=True))
+        found = {key: self._log_deviation(points, one) for key, one in distinct.items()}
+        return [found[key] for key in names]
+
+    def _log_deviation(self, points, uncertain):
         if not uncertain.factors():
             return xr.zeros_like(xr.broadcast(*map(xr.DataArray, points.values()))[0])
+        other = copy(self)
         other._study = self._study.model_copy(update={"uncertainty": uncertain})
-        with np.errstate(divide="ignore"):
-            return np.log(other.probabilities(points)).std("sample")
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.log(other.probabilities(points)).std("sample", skipna=False)
 
     @staticmethod
     def limits(samples: xr.DataArray, name: str) -> dict[str, xr.DataArray]:

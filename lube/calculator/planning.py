@@ -83,10 +83,10 @@ def plan(
         Resistance below which that rig shows contact. An ECR meter shows the mean voltage, which
         depends on no threshold.
     bands : bool or dict, optional
-        Whether what is not known exactly widens the intervals; ranges are as in
-        `lube.contact_probability`. The film is inferred without knowing oil, temperature and speed,
-        the coefficient and the layer's strength without their own ranges. It takes three times as
-        long as there.
+        Whether quantities that are not known exactly widen the intervals; ranges are as in
+        `lube.contact_probability`, but choices of the model do not count. The film is inferred
+        without knowing oil, temperature and speed, the coefficient and the layer's strength without
+        their own ranges. It takes up to three times as long as there.
 
     Returns
     -------
@@ -121,7 +121,7 @@ def plan(
     )
     slip, formula = choices.slip, one_name("film_formula", film_formula)
     check_realisations(realisations, seed)
-    assumed = Assumptions(bands, rollers, oil, choices, formula, seed)
+    assumed = Assumptions(bands, rollers, oil, choices, formula, seed, CHOICES)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
     table = film_in_si(rollers, oil, force, speed, temperature, formula, choices)
     reading = _reading_error(rollers, table, gap, slip, rig, thresholds.values, seed)
@@ -149,7 +149,7 @@ def _unknown(assumed, points, table):
     """
     found, dims = {"half_width": 0.0}, table["film_thickness"].dims
     if assumed.wanted:
-        each = (assumed.log_deviation(points, (*one, *CHOICES)) for one in planning.GIVEN.values())
+        each = assumed.log_deviations(points, planning.GIVEN.values())
         each = [one.broadcast_like(table["film_thickness"]).transpose(*dims) for one in each]
         found["half_width_assumed"] = np.reshape(each, (len(each), 1, -1))
     return found

@@ -57,7 +57,7 @@ def wave_responses(
     solved : xarray.DataArray
         Elements are a `lube.ehl.line_contact.FilmProfile`, or None where there is no film.
     contact : xarray.Dataset
-        From `lube.grid.films.hertz_contact`.
+        With the variables from `lube.grid.films.hertz_contact`.
     slide_to_roll_ratio : xarray.DataArray
         Slide-to-roll ratio, over the dimension of this name or over those of the films.
     spec : lube.study.line_spec.LineSpec

@@ -228,7 +228,7 @@ def surface_grid(
         times = side / spacing / LARGEST
         if times > 1.0:
             lay = ", or shorter ridges" * any(line.lay_ratio > 1.0 for line in spec.lines)
-            # The side decreases with the longest wave, unless the contact is too wide for most.
+            # The side decreases with the longest wave, unless the contact is far wider than it.
             most = min(side / times / waves, side / times - width) / longest
             own = max(2.0 * math.pi / line.q_min for line in spec.lines)
             # Rounded down, so that the length does.

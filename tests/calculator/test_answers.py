@@ -3,6 +3,7 @@
 import pickle
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
@@ -171,6 +172,22 @@ def test_first_and_last_points_are_shown(found, cycle, rollers, oil, monkeypatch
     (time,) = (line.split()[2:] for line in repr(trace).splitlines() if line.startswith("time"))
     assert len(time) == 7 and time[0] == "0" and time[3] == "..."
     assert "\nwhole_tail_rate [h-1] " in repr(cycle)
-    assert repr(found[[]]).startswith("<Answer>\nlubricant")
-    for empty in (lube.Answer(), found.isel(force=[])):
-        assert repr(empty).startswith("<xarray.Answer>") and "xarray.Answer" in empty._repr_html_()
+    others = lube.Answer(), found.isel(force=[]), found[["breakthrough_probability"]]
+    for plain in (*others, lube.Answer({3: ("x", [1.0])})):
+        assert repr(plain).startswith("<xarray.Answer>") or 3 in plain
+        assert "xarray.Answer" in plain._repr_html_()
+
+
+def test_what_is_made_of_answers_is_shown_too(found, cycle):
+    both = repr(xr.concat([cycle, cycle], pd.Index(["a", "b"], name="oil")))
+    assert "\nwhole_tail_probability " in both and "\noil " in both
+    # A single realisation has no interval.
+    single = repr(found.isel(realisation=0, force=0, temperature=0)).splitlines()
+    (own,) = (line for line in single if line.startswith("breakthrough_probability "))
+    (mean,) = (line for line in single if line.startswith("breakthrough_probability_mean "))
+    assert " to " in mean and " to " not in own
+
+
+def test_conditions_are_shown_as_they_were_given(rollers, oil):
+    shown = repr(lube.film(rollers, oil, ["12345 N", "12346.5 N"], "100 rpm", "60.125 degC"))
+    assert {"12345", "12346.5", "60.125"} <= set(shown.split())

@@ -158,6 +158,11 @@ def test_what_is_uncertain_widens_the_intervals_of_what_depends_on_it(rollers, o
     [
         ("all", {}, "bands: got 'all', need True, False or a dict of ranges"),
         (True, {"load_sharing": "iterated"}, "bands: "),
+        (
+            {"film_formula": {"choices": ["paper", "moes"], "source": "assumed"}},
+            {},
+            "bands: got film_formula, need an uncertain quantity or choice on which",
+        ),
         ({"lambda_ratio": {"range": "+- 2 %"}}, {}, "bands: lambda_ratio"),
     ],
 )

@@ -145,7 +145,7 @@ def test_they_show_themselves_and_travel_between_processes():
         ),
         (
             lambda: lube.trace(None, None, bands=True),
-            "trace: bands: unknown argument, only contact_probability, duty and the required_",
+            "trace: bands: unknown argument, only contact_probability, duty, plan and the",
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", lay_angle="0 deg"),
