@@ -371,6 +371,7 @@ _NEEDED = {
     "tuple_type": "need a list such as [a, b]",
     "too_short": "need {min_length} or more entries",
     "int_type": "need a whole number",
+    "int_parsing_size": "need a smaller number",
     "string_type": "need text",
     "string_too_short": "need some text",
     "string_pattern_mismatch": "need lower-case letters, digits, '-' or '_', 63 at most",

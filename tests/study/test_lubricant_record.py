@@ -173,6 +173,11 @@ MISTAKES = [
         "  iso_vg: 200\n  viscosity_index: 95\n",
         "viscosity.iso_vg: got 200, need 10, 15, 22",
     ),
+    (
+        POINTS,
+        f"  iso_vg: {22 * 10**40}\n  viscosity_index: 95\n",
+        f"viscosity.iso_vg: got {22 * 10**40}, need a smaller number",
+    ),
     ("title: My oil", "title: My oil\nviscosity_law: walther", "viscosity_law: got 'walther'"),
     (GOLD, "", "pressure_viscosity: need either gold_base alone, or a"),
     (GOLD, GOLD + "  value: 20 1/GPa\n", "need either gold_base alone, or a"),
