@@ -18,11 +18,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
-from whole_surfaces import Filtered, Unchanged, answered_strip, contacts_in, curved_more
+from whole_surfaces import (
+    Filtered,
+    Unchanged,
+    answered_strip,
+    begun,
+    curved_more,
+    in_motion,
+    summits_in,
+)
 
 from lube.contact.strip_film import StripFilm, surface_moments
 from lube.contact.surface_answers import COARSEST
-from lube.grid.operating_points import surface_speeds
 from lube.study.study import load_study
 from lube.surfaces.rough_surface import field as heights_of
 from lube.surfaces.rough_surface import rough_surface
@@ -106,17 +113,10 @@ class Motion:
     slip: float
 
     def steps(self, seed):
-        """Yield the overlaps and the mean curvatures of the gap, in height steps, at each step."""
-        surface, generator = self.surface, np.random.default_rng(seed)
-        phase = 2j * np.pi / surface.points[1] * np.arange(surface.coarse[1] // 2 + 1)
-        both = surface.of_each(surface.draw(generator)[2], generator)
+        """Yield heights, in height steps, and mean curvatures in the gap, in these per m^2."""
+        surface, as_drawn = self.surface, Unchanged(self.surface)
         columns = self.strip.films(surface.spacing[1]).size
-        as_drawn = Unchanged(surface)
-        for step in range(STEPS):
-            moved = [
-                waves * np.exp(-step * speed * phase)
-                for waves, speed in zip(both, surface_speeds(1.0, self.slip), strict=True)
-            ]
+        for moved in in_motion(surface, np.random.default_rng(seed), self.slip, STEPS):
             heights = self.heights(moved)(0, columns)
             added = heights - as_drawn.heights(moved)(0, columns)
             curved = heights_of(sum(moved) * surface.curvatures, surface.points)[:, :columns]
@@ -151,12 +151,6 @@ def breaking_curvature(strip, spec, part):
     return rms * scipy.optimize.brentq(excess, 0.05, 9.0)
 
 
-def begun(touching):
-    """Number of bodies in space and time that are not there at the first step."""
-    labels, count = scipy.ndimage.label(touching, np.ones((3, 3, 3)))
-    return count - np.unique(labels[0])[1:].size
-
-
 def counted(motion, spec, limits, seed):
     """Contacts in the strip and those that appear, then the same of broken layers."""
     spacing = motion.surface.spacing[1]
@@ -164,13 +158,13 @@ def counted(motion, spec, limits, seed):
     sharp = [motion.strip.breaking_curvatures(spacing, each) / spec.height_step for each in limits]
     touching, broken, numbers = [], [[] for _ in limits], np.zeros(1 + len(limits))
     for heights, curved in motion.steps(seed):
-        overlap = heights - films
+        labels, summits = summits_in(heights - films, motion.surface.diagonal)
         for row, limit in enumerate(sharp):
-            labels, *breaks = contacts_in(overlap, curved > limit, motion.surface.diagonal)
+            breaks = [curved[summit] > limit[summit[1]] for summit in summits]
             numbers[1 + row] += sum(breaks)
             broken[row].append(np.array([False, *breaks])[labels])
         touching.append(labels > 0)
-        numbers[0] += len(breaks)
+        numbers[0] += len(summits)
     return np.stack([numbers / STEPS, [begun(each) for each in (touching, *broken)]])
 
 

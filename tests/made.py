@@ -26,7 +26,7 @@ def on_few_surfaces(number=6):
     rolling, and follow it for few steps: where the size of an error is not judged."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("lube.contact.surface_strip.SURFACES", number)
-        patch.setattr("lube.contact.surface_strip.STRIPS", 150)
+        patch.setattr("lube.contact.strip_sampling.STRIPS", 150)
         patch.setattr("lube.inference.surface_records.FEWER", 1)
         patch.setattr("lube.inference.surface_records.LAYER_FEWER", 1)
         patch.setattr("lube.inference.planning.FEWER", 1)

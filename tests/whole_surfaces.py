@@ -12,6 +12,7 @@ from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import strip_films
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
+from lube.grid.operating_points import surface_speeds
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.rough_surface import field
 
@@ -128,11 +129,32 @@ def curved_more(added, spacing):
     return 0.5 * (down / spacing[0] ** 2 + along / spacing[1] ** 2)
 
 
-def contacts_in(overlap, sharper, diagonal):
-    """Labels of contacts, then of each whether it breaks its boundary layer."""
+def summits_in(overlap, diagonal):
+    """Label contacts, and find the highest point of each."""
     neighbours = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
     if diagonal:
         neighbours[0, 1 - diagonal] = neighbours[2, 1 + diagonal] = 1
     labels, count = scipy.ndimage.label(overlap > 0.0, neighbours)
-    summits = scipy.ndimage.maximum_position(overlap, labels, range(1, count + 1))
+    return labels, scipy.ndimage.maximum_position(overlap, labels, range(1, count + 1))
+
+
+def contacts_in(overlap, sharper, diagonal):
+    """Labels of contacts, then of each whether it breaks its boundary layer."""
+    labels, summits = summits_in(overlap, diagonal)
     return labels, *(bool(sharper[summit]) for summit in summits)
+
+
+def in_motion(surface, generator, slip, steps):
+    """Yield the waves of both surfaces at each step, in which they move by a column on average."""
+    phase = 2j * np.pi / surface.points[1] * np.arange(surface.coarse[1] // 2 + 1)
+    both = surface.of_each(surface.draw(generator)[2], generator)
+    for step in range(steps):
+        moved = zip(both, surface_speeds(1.0, slip), strict=True)
+        yield [waves * np.exp(-step * speed * phase) for waves, speed in moved]
+
+
+def begun(touching):
+    """Number of bodies in space and time that are not there at the first step."""
+    # A body may be narrower than its way in a step.
+    labels, count = scipy.ndimage.label(touching, np.ones((3, 3, 3)))
+    return count - np.unique(labels[0])[1:].size

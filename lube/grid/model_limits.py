@@ -12,8 +12,8 @@ LARGEST_SHARE = 0.1
 """Largest share of the load on the surfaces' asperities at which the film of smooth rollers counts
 as valid."""
 SEPARATING_RATIO = 2.5
-"""Lambda ratio from which on the oil kept overlapping lines apart in a transient solution, by more
-than the critical thickness of the boundary layer (Figure 35)."""
+"""At this lambda ratio and above, the oil of a transient solution kept overlapping lines apart, by
+more than the critical thickness of the boundary layer (Figure 35)."""
 
 
 def overloaded(contact: xr.Dataset) -> xr.DataArray:

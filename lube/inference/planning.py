@@ -42,8 +42,8 @@ GIVEN = {
     "pressure-viscosity coefficient": ("pressure_viscosity_coefficient",),
     "layer strength": ("layer",),
 }
-"""Quantities inferred from a record: uncertain quantities, and groups of them, of which each
-inference does without."""
+"""For each quantity inferred from a record, the uncertain quantities, or groups of them, that need
+not be known for it."""
 QUANTITIES = tuple(GIVEN)
 _THICKER = np.array([1.0 + STEP, 1.0 - STEP, 1.0, 1.0])
 _WEAKER = _THICKER[::-1]

@@ -32,7 +32,7 @@ from lube.types import Array, Pair, Values
 PAIRS = 200
 """Number of pairs of rollers whose records are drawn."""
 CERTAIN = 1.0 - 1e-9
-"""Probability from which on no record of a pair differs."""
+"""At this probability and above, every pair counts as in contact all the time."""
 
 
 def revolution_size(spec: LineSpecLike, contact: xr.Dataset) -> Array:

@@ -43,7 +43,7 @@ WINDOWS = 800
 RUNS = 400
 """Runs along each pair of lines."""
 FOLLOWED = 100
-"""Number of these runs, one of their divisors, that are followed through an uneven window."""
+"""Number of these runs that are followed through an uneven window; it divides `RUNS`."""
 LOOKS = 64
 """Number of moments at which such a run is looked at, in pure rolling."""
 RUN_NUMBERS = 10

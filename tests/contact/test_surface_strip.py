@@ -15,11 +15,12 @@ from whole_surfaces import (
     drawn_waves,
 )
 
-from lube.contact import surface_strip
+from lube.contact import strip_sampling, surface_strip
 from lube.contact.rough_pair import RoughPair
-from lube.contact.strip_film import surface_moments
+from lube.contact.strip_film import StripFilm, surface_moments
+from lube.contact.strip_sampling import first_contacts, sampled_strips
 from lube.contact.surface_answers import COARSEST
-from lube.contact.surface_strip import StripFilm, first_contacts, surface_contact
+from lube.contact.surface_strip import surface_contact
 from lube.errors import StudyError
 from lube.grid.gap import Gap
 from lube.schema import LIMITS
@@ -84,7 +85,7 @@ def test_numbers_beyond_certainty_do_not_scatter():
     """Without one of the surfaces every row seems to touch."""
     first = np.zeros((24, 30))
     first[1:, 0] = 1.0
-    function = partial(surface_strip._up_to_certain, rows=1000)
+    function = partial(strip_sampling._up_to_certain, rows=1000)
     _, lower, upper = -np.expm1(-np.array(jackknife_interval(first, function)))
     assert lower == upper == 1.0
 
@@ -186,9 +187,9 @@ def compare(spec, surfaces, surface, film, count):
     rng = np.random.default_rng(8)
     counted = np.array([searched(surfaces, surface, films, sharp, rng) for _ in range(count)])
     pair = RoughPair(spec, (ROWS + 0.5) * surface.spacing[0], layer=None, seed=SEED)
-    strips = [film], np.array([surface_strip.STRIPS]), np.array([False])
+    strips = [film], np.array([strip_sampling.STRIPS]), np.array([False])
     seeds = surface_strip.surface_seeds(SEED, surface_strip.SURFACES)
-    found = surface_strip._sampled(pair, surface, *strips, [curvature], seeds, threads=1)
+    found = sampled_strips(pair, surface, *strips, [curvature], seeds, threads=1)
     names = ["geometric_contact_probability", "breakthrough_probability"]
     names += ["contacts", "breakthroughs"]
     for name, values in zip(names, counted.reshape(count, 4).T, strict=True):
@@ -240,17 +241,17 @@ def test_breakthrough_is_no_more_likely_than_contact(study, make_spec, monkeypat
     oil = lubricant_table(study.lubricants, [40.0])
     film = film_table(oil, study.rollers, [1600.0], [100.0], ["paper"])
     layer = study.boundary_layer.model_copy(update={"shear_strength": 2e5})
-    sample = surface_strip._on_one_surface
+    sample = strip_sampling._on_one_surface
 
     def exchanged(*arguments):  # errors of sampling, exaggerated
         first, numbers = sample(*arguments)
         return first[:, ::-1], numbers
 
-    monkeypatch.setattr(surface_strip, "_on_one_surface", exchanged)
+    monkeypatch.setattr(strip_sampling, "_on_one_surface", exchanged)
     found = surface_contact(RoughPair(make_spec(30_000), 10e-3, layer, SEED), film)
     assert found["breakthrough_probability"] > 0.0
     for end in LIMITS:
-        geometric, breakthrough = (found[f"{name}{end}"] for name in surface_strip._COUNTS)
+        geometric, breakthrough = (found[f"{name}{end}"] for name in strip_sampling.COUNTS)
         assert breakthrough <= geometric
 
 
