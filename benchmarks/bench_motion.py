@@ -1,6 +1,6 @@
 """Surfaces in motion: how long contacts last and layers are broken, counted and by theory.
 
-    PYTHONPATH=tests python benchmarks/bench_motion.py    # a quarter of an hour on two cores
+    PYTHONPATH=tests python benchmarks/bench_motion.py    # some three minutes on two cores
 
 Both rollers' surfaces are drawn, moved step by step, and their contacts followed in time. Films are
 flat, or those of an oil at 1600 N, 100 r/min and 80 °C that answers each wave, scaled to a lambda
