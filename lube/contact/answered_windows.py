@@ -145,7 +145,7 @@ def _covariance(waves, power):
 def _bands(spec, roller, answer, points):
     """Bands of a line's waves: their power, phase from point to point, and filters by an answer."""
     first, amplitudes = wave_amplitudes(spec, roller)
-    unit = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    unit = spec.wave_step(roller)
     amplitudes = amplitudes[: max(int(answer.wavenumber[-1] / unit) - first + 1, 0)]
     # So few waves in a band that they are in phase over the window.
     band = max(1, int(_IN_PHASE / (unit * spec.spacing * points)))

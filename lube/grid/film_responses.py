@@ -125,7 +125,7 @@ def with_surface_responses(inputs: Datasets) -> xr.Dataset:
 def _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads):
     """Responses, and their interpolation errors over all of their dimensions but the last two."""
     widths, longest = contact["contact_half_width"], spec.longest_wavelength
-    shortest = max(SHORTEST * widths.min().item(), 2.0 * np.pi / spec.q_max)
+    shortest = max(SHORTEST * widths.min().item(), spec.shortest_wavelength)
     ratio = FINER_RATIO if (np.abs(slide_to_roll_ratio) > 1.0).any() else WAVE_RATIO
     count = int(np.ceil(np.log(longest / shortest) / np.log(ratio)))
     waves = np.geomspace(longest, shortest, count + 1)

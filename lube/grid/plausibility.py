@@ -1,6 +1,5 @@
 """Numbers to look at before a long computation, and remarks on values that may be mistakes."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -53,7 +52,7 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
         Texts by the names of the quantities.
     """
     film = film.isel(film_formula=0)
-    width, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
+    width, shortest = 2.0 * film["contact_half_width"], lines.shortest_wavelength
     invalid = ~film["in_validity_range"].astype(bool)
     shares = {
         "line": expected_load_share(film, rollers) if lines.follows_rolling else None,
@@ -110,7 +109,7 @@ def remarks(film: xr.Dataset, lines, rollers, models: Sequence[str] = ("line",))
 def _unusual(film, lines, rollers, of_lines):
     """Remarks on values that may be mistakes, each with whether it applies."""
     moduli = rollers.first.young_modulus, rollers.second.young_modulus
-    widths, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
+    widths, shortest = 2.0 * film["contact_half_width"], lines.shortest_wavelength
     width, widest = widths.min().item(), widths.max().item()
     pressure = film["hertz_pressure"].max().item()
     films = film["film_thickness"]

@@ -86,7 +86,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         "findings.md",
         study=study,
         film=film.sel(first),
-        shortest=2.0 * math.pi / study.line_spec.q_max,
+        shortest=study.line_spec.shortest_wavelength,
         **_film(film, first),
         contacts={model: _contact(each.sel(first)) for model, each in contacts.items()},
         trends={model: _trends(each.sel(first)) for model, each in contacts.items()},

@@ -59,7 +59,7 @@ def groups(
     spec = deviating.study.line_spec
     rms = deviating.rms_roughness(values)
     longest = spec.longest_wavelength * (1.0 + values.get("longest_wavelength", 0.0))
-    shortest = 2.0 * np.pi / spec.q_max * (1.0 + values.get("shortest_wavelength", 0.0))
+    shortest = spec.shortest_wavelength * (1.0 + values.get("shortest_wavelength", 0.0))
     hurst = values.get("hurst_exponent", spec.lines[0].hurst_exponent or 0.5)
     layer = deviating.study.boundary_layer
     strength = layer.shear_strength / layer.critical_thickness / film["reduced_modulus"]

@@ -72,7 +72,7 @@ def _surface(topography, line, hurst):
     """Describe the surface of a roller; fits use the waves in the band of its line."""
     surface = prepared(topography)
     spectrum = line_spectrum(surface, preparation(topography))
-    longest = 2.0 * np.pi / line.q_min
+    longest = line.longest_across_lay
     waves = statistics.waves_of_surface(spectrum, longest, line.shortest_wavelength)
     bend = statistics.roll_off(spectrum, waves)
     shorter = waves if bend is None else waves._replace(longest=bend.value)

@@ -70,9 +70,14 @@ class RoughLine(StrictModel):
     lay_angle: float = 90.0
 
     @property
+    def longest_across_lay(self) -> float:
+        """Longest wavelength across the lay of the surface, m; without a lay that of the line."""
+        return 2.0 * math.pi / self.q_min
+
+    @property
     def longest_wavelength(self) -> float:
         """Longest wavelength of the line, m."""
-        return 2.0 * math.pi / self.q_min * self.lay_ratio
+        return self.longest_across_lay * self.lay_ratio
 
     @property
     def shortest_wavelength(self) -> float:
@@ -177,6 +182,15 @@ class LineSpec(StrictModel):
     def longest_wavelength(self) -> float:
         """Longest wavelength of both lines, m."""
         return 2.0 * math.pi / self.q_min
+
+    @property
+    def shortest_wavelength(self) -> float:
+        """Shortest wavelength of both lines, m."""
+        return 2.0 * math.pi / self.q_max
+
+    def wave_step(self, roller: int) -> float:
+        """Wavenumber of a wave as long as the perimeter of a roller, 0 or 1, rad/m."""
+        return 2.0 * math.pi / (self.points[roller] * self.spacing)
 
     @property
     def travel(self) -> float:

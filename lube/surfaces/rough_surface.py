@@ -182,7 +182,7 @@ def field(waves: Array, points: tuple[int, int]) -> Array:
 def longest_waves(spec: LineSpecLike) -> Pair:
     """Longest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
     waves = [
-        np.multiply(2.0 * math.pi / line.q_min, extents(line.lay_ratio, line.lay_angle))
+        np.multiply(line.longest_across_lay, extents(line.lay_ratio, line.lay_angle))
         for line in spec.lines
     ]
     along, across = np.max(waves, axis=0).tolist()
@@ -230,7 +230,7 @@ def surface_grid(
             lay = ", or shorter ridges" * any(line.lay_ratio > 1.0 for line in spec.lines)
             # The side decreases with the longest wave, unless the contact is far wider than it.
             most = min(side / times / waves, side / times - width) / longest
-            own = max(2.0 * math.pi / line.q_min for line in spec.lines)
+            own = max(line.longest_across_lay for line in spec.lines)
             # Rounded down, so that the length does.
             shorter = f", or a longest of {995.0 * most * own:.3g} mm" if most > 0.1 else ""
             raise DataError(
@@ -344,7 +344,7 @@ def surface_waves(spec: LineSpecLike, roller: int) -> tuple[Array, Array, Array]
     powers = np.bincount(classes, power)
     some = powers > 0.0
     number = np.sqrt(np.bincount(classes, power * number**2)[some] / powers[some])
-    wavenumber = 2.0 * np.pi / (spec.points[roller] * spec.spacing) * number[:, None]
+    wavenumber = spec.wave_step(roller) * number[:, None]
     psi = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
     along, across = stretched(wavenumber, psi, line.lay_ratio, line.lay_angle)
     sign, power = np.where(along < 0.0, -1.0, 1.0), np.broadcast_to(powers[some, None], along.shape)
@@ -354,6 +354,6 @@ def surface_waves(spec: LineSpecLike, roller: int) -> tuple[Array, Array, Array]
 def _power(spec, roller, step, shells):
     """Variance of a line's waves in each shell of wavenumbers, squared height steps."""
     first, amplitudes = amplitudes_across_lay(spec, roller)
-    own_step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    own_step = spec.wave_step(roller)
     shell = np.rint(own_step / step * np.arange(first, first + amplitudes.size)).astype(np.int64)
     return np.bincount(shell, 0.5 * (amplitudes / spec.height_step) ** 2, minlength=shells)

@@ -131,7 +131,7 @@ def wave_powers(spec: LineSpecLike, roller: int) -> Pair:
         As in `spectrum_moments`.
     """
     first_wave, amplitudes = wave_amplitudes(spec, roller)
-    step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    step = spec.wave_step(roller)
     return step * (first_wave + np.arange(amplitudes.size)), 0.5 * amplitudes**2
 
 
@@ -196,7 +196,7 @@ def spectrum_bands(spec: LineSpecLike, roller: int, bands: int) -> Pair:
         Shape (bands,), m^3, one-sided; NaN where a band has no wave.
     """
     waves, powers = wave_powers(spec, roller)
-    step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    step = spec.wave_step(roller)
     edges = np.geomspace(waves[0] - 0.5 * step, waves[-1] + 0.5 * step, bands + 1)
     inside = np.digitize(waves, edges) - 1
     counts, power = (np.bincount(inside, each, bands) for each in (None, powers))

@@ -41,10 +41,8 @@ class LineSpecLike(Protocol):
         Parameters of either line, such as `lube.study.line_spec.RoughLine`.
     points : tuple of int
         Points N around each roller.
-    longest_wavelength : float
-        Longest wavelength of both lines, m.
-    q_max : float
-        Largest wavenumber of both lines, rad/m.
+    longest_wavelength, shortest_wavelength : float
+        Longest and shortest wavelength of both lines, m.
     spacing : float
         Distance dx of neighbouring points, m.
     height_step : float
@@ -54,9 +52,12 @@ class LineSpecLike(Protocol):
     lines: tuple[Any, Any]
     points: tuple[int, int]
     longest_wavelength: float
-    q_max: float
+    shortest_wavelength: float
     spacing: float
     height_step: float
+
+    def wave_step(self, roller: int) -> float:
+        """Wavenumber of a wave as long as the perimeter of a roller, 0 or 1, rad/m."""
 
 
 def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, Array]:
