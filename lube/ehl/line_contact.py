@@ -15,6 +15,7 @@ from lube.errors import LubeError, RangeError
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.pressure_laws import PRESSURE_LAWS, ROELANDS_VISCOSITY, dowson_higginson_density
 from lube.physics.regimes import asymptotic_film
+from lube.physics.starvation import starvation_factor
 from lube.types import Array, Values
 
 log = logging.getLogger(__name__)
@@ -303,11 +304,16 @@ def solve(
         )
 
     def inlet(offset, film):
-        return inlet_end(offset, flooded * film) if meniscus is None else -meniscus
+        # Oil that begins farther away floods the contact.
+        end = inlet_end(offset, flooded * film)
+        return end if meniscus is None else max(end, -meniscus)
 
     film = contact.film_guess
+    if meniscus is not None:
+        film = float(film * starvation_factor(film, meniscus))
     nodes = first_mesh(film, inlet(film - _HERTZ_DEFLECTION, film))
-    pressure = np.sqrt(np.maximum(1.0 - (nodes / breadth(film)) ** 2, 0.0))
+    reach = min(breadth(film), -nodes[0])
+    pressure = np.sqrt(np.maximum(1.0 - (nodes / reach) ** 2, 0.0))
     profile = _settle(contact, nodes, pressure, film, 0)
     for _ in range(_FITTINGS):
         nodes = fitted_mesh(profile, inlet(profile.offset, profile.central_gap), fineness)

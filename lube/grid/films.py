@@ -119,14 +119,14 @@ def _films(rows, groups, contact):
     if groups.meniscus is not None:
         starved["starvation_factor"] = film / films(replace(groups, meniscus=None))
     flag = xr.apply_ufunc(regime, *moes_numbers, join="exact")
-    valid = [row.holds(*moes_numbers) for row in rows]
+    valid = xr.concat([row.holds(*moes_numbers) for row in rows], dim=names, join="exact")
     return contact.assign(
         moes_load=moes_numbers[0],
         moes_material=moes_numbers[1],
         regime=flag.astype("int8"),  # the type of its flag_values, as CF requires
         film_thickness=film,
         lambda_ratio=film / contact["composite_rms_roughness"],
-        in_validity_range=xr.concat(valid, dim=names, join="exact"),
+        in_validity_range=valid & film.notnull(),  # a computed film need not converge
         formula_place=("film_formula", [row.thickness for row in rows]),
         formula_source=("film_formula", [row.source for row in rows]),
         **starved,

@@ -103,7 +103,7 @@ def remarks(film: xr.Dataset, lines, rollers, models: Sequence[str] = ("line",))
     # No line stands for surfaces whose ridges run along rolling.
     of_lines = "line" in models and lines.follows_rolling
     found = _unusual(film, lines, rollers, of_lines) | _beyond_model(film, rollers, of_lines)
-    return [text for text, is_so in found.items() if is_so]
+    return [text for text, is_so in (found | _unknown(film)).items() if is_so]
 
 
 def _unusual(film, lines, rollers, of_lines):
@@ -155,6 +155,18 @@ def _beyond_model(film, rollers, of_lines):
         f"roughness: at {apart} of {share.size} operating points the lambda ratio is at least "
         f"{SEPARATING_RATIO}; lines that touch there by the linear response may be kept apart by "
         "the oil, whose response is not linear": apart,
+    }
+
+
+def _unknown(film):
+    """Remark on operating points whose film is not known, with their number."""
+    parts = [film[name] for name in ("film_thickness", "film_profile") if name in film]
+    unknown = sum(part.isnull() for part in parts) > 0
+    unknown = unknown.any([dim for dim in unknown.dims if dim == "film_position"])
+    return {
+        f"film: unknown at {int(unknown.sum())} of {unknown.size} operating points, and so is "
+        "contact: Reynolds' equation was not solved there, or the heating at the inlet is beyond "
+        "the range of its model": unknown.any(),
     }
 
 

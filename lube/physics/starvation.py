@@ -36,7 +36,7 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
     Returns
     -------
     float or numpy.ndarray
-        The factor, between 0 and 1.
+        The factor, between 0 and 1; NaN where the film or the meniscus is.
 
     Raises
     ------
@@ -56,9 +56,9 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
     [0.663, 0.962, 1.0]
     """
     film, meniscus = np.broadcast_arrays(np.asarray(film, float), np.asarray(meniscus, float))
-    if not np.all(meniscus > 1.0):
+    if np.any(meniscus <= 1.0):
         raise RangeError(
-            f"meniscus: got {meniscus.min():g} half-widths before the line of centres, inside "
+            f"meniscus: got {np.nanmin(meniscus):g} half-widths before the line of centres, inside "
             "the contact, need more than 1 half-width"
         )
     wanted, _ = inlet_integral(np.log(film), film, np.inf)

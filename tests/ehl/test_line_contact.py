@@ -382,6 +382,14 @@ def test_a_smooth_maximum_of_the_pressure_is_no_spike(numbers):
     assert np.isnan(solve(contact_of(*numbers, "roelands")).spike)
 
 
+@pytest.mark.parametrize("point", [(100, 200, 40), (800, 100, 40)])
+def test_the_film_grows_with_the_distance_of_the_meniscus_until_it_is_flooded(point):
+    contact = contact_at(*point)
+    flooded = solve(contact).central_film
+    films = [solve(contact, meniscus=each).central_film for each in (1.03, 1.1, 1.5, 5.0, 1e5)]
+    assert films == sorted(films) and films[0] < 0.2 * flooded and films[-1] == flooded
+
+
 def test_a_meniscus_inside_the_contact_is_refused():
     with pytest.raises(RangeError, match=r"got 0\.8 half-widths before .*, need more than 1"):
         solve(contact_at(800, 100, 40), meniscus=0.8)

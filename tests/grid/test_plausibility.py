@@ -53,6 +53,18 @@ def test_roughness_that_the_oil_changes_too_much_is_remarked(study, film, name):
     assert any(line.startswith(said) for line in lines)
 
 
+@pytest.mark.parametrize("name", ["film_thickness", "film_profile"])
+def test_films_that_are_not_known_are_remarked(study, film, name):
+    question, one = (study.line_spec, study.rollers), film["film_thickness"].isel(film_formula=0)
+    assert not any("unknown" in line for line in remarks(film, *question))
+    found = film["film_thickness"] if name == "film_thickness" else one.expand_dims(film_position=9)
+    unsolved = found.copy(deep=True)
+    unsolved[dict.fromkeys(one.dims, 0)] = np.nan
+    found = remarks(film.assign({name: unsolved}), *question)
+    said = f"film: unknown at 1 of {one.size} operating points"
+    assert any(line.startswith(said) for line in found)
+
+
 def test_no_load_on_the_line_is_stated_where_no_line_stands_for_the_surfaces(study, film):
     thin = film.assign(film_thickness=0.1 * film["film_thickness"])
     thin["surface_load_share"] = xr.full_like(film["film_thickness"], 0.123)

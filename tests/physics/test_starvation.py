@@ -50,6 +50,12 @@ def test_the_inlet_builds_up_the_same_pressure():
         assert inlet(starved, meniscus) == pytest.approx(inlet(film, np.inf), rel=1e-7)
 
 
+def test_where_film_or_contact_is_not_known_the_factor_is_not_either():
+    film, meniscus = np.array([1.0, np.nan, 1.0]), np.array([3.0, 3.0, np.nan])
+    found = starvation_factor(film, meniscus)
+    assert found[0] == starvation_factor(1.0, 3.0) and np.isnan(found[1:]).all()
+
+
 def test_a_meniscus_inside_the_contact_is_refused():
     line = one_line(RangeError, starvation_factor, np.array([1.0, 2.0]), np.array([3.0, 0.9]))
     assert "got 0.9 half-widths before the line of centres, inside the contact, need more" in line
