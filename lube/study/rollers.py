@@ -268,9 +268,6 @@ class Roughness(OwnRoughness):
     squared
     """
     lay_ratio: _LayRatio = 1.0
-    """how many times longer than wide the ridges of the surface are, 1 for an isotropic surface;
-    wavelengths, cutoffs and Hurst exponent are those across the ridges
-    """
     points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
     """points N around the first roller"""
     height_step: Length
