@@ -12,8 +12,8 @@ from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import check_realisations, checked, conditions
 from lube.calculator.bands import Assumptions
-from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
-from lube.calculator.film import conditions_of, film_in_si, formula_names, of_film, with_remarks
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices, Inlet
+from lube.calculator.film import conditions_of, film_in_si, of_film, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import with_limits, with_pair_limits
@@ -146,16 +146,14 @@ def contact_probability(
     >>> bool(found.tail_breakthrough_probability_lower > 0)
     True
     """
-    gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
-    )
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, slide_to_roll_ratio, contact_model)
     slip = choices.slip
     pair = rollers.rough_pair(seed, gap)
     check_realisations(realisations, seed)
-    assumed = Assumptions(bands, rollers, oil, choices, formula_names(film_formula)[0], seed)
+    assumed = Assumptions(bands, rollers, oil, choices, seed)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices)
+    table = film_in_si(rollers, oil, force, speed, temperature, choices)
     found = of_film(table)
     if "line" in choices.models:
         contact = ensemble(pair, table, realisations, slip)
