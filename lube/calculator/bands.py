@@ -87,7 +87,7 @@ class Assumptions:
             rollers=rollers.given_pair,
             roughness=rollers.roughness,
             boundary_layer=rollers.layer,
-            film_formulas=choices.formulas[:1],
+            film_formulas=tuple(np.ravel(choices.film_formula).tolist()[:1]),
             **asdict(choices.gap),
             load_sharing=choices.load_sharing,
             inlet_shear_heating=choices.inlet.shear_heating,

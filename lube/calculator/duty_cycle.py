@@ -17,15 +17,15 @@ from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.bands import Assumptions
 from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices, Inlet
-from lube.calculator.contact import ensemble, joined, of_surface
-from lube.calculator.film import check_contact, film_model, film_of_oil, of_film, with_remarks
+from lube.calculator.contact import contact_at
+from lube.calculator.film import check_contact, film_model, film_of_oil, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import with_pair_limits
 from lube.errors import DataError, located, right_one, shown
 from lube.grid.gap import Gap
 from lube.schema import LIMITS, values_with_limits
-from lube.stages.tail import pair_limits, pair_probabilities
+from lube.stages.tail import pair_limits
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
 
@@ -136,18 +136,10 @@ def duty(
     assumed = Assumptions(bands, rollers, oil, choices, seed)
     assumed.check(given)
     table = _films(rollers, oil, given, choices)
-    pair = rollers.rough_pair(seed, gap)
-    parts, whole = of_film(table), {}
-    if "line" in choices.models:
-        contact = ensemble(pair, table, realisations, 0.0)
-        on_pairs = pair_probabilities(pair, table, choices.slip)
-        parts = joined(table, contact, on_pairs)
-        whole = _whole(parts, on_pairs, share, pair.spec)
+    parts, on_pairs = contact_at(table, rollers.rough_pair(seed, gap), choices, realisations, 0.0)
+    whole = {} if on_pairs is None else _whole(parts, on_pairs, share, rollers.lines)
     if "surface" in choices.models:
-        parts = parts.assign(of_surface(pair, table, choices.slip))
         whole |= _whole_of_surface(parts, share)
-    if choices.has_surfaces:
-        parts = parts.assign(surface_load_share=table["surface_load_share"])
     if assumed.wanted:
         samples = assumed.probabilities(given | {"slide_to_roll_ratio": choices.slip})
         parts = parts.assign(assumed.limits(samples, "assumed_breakthrough_probability"))

@@ -104,12 +104,7 @@ def of_film(table: xr.Dataset) -> xr.Dataset:
 
 
 def film_in_si(
-    rollers: Rollers,
-    oil: Oil,
-    force: Amount,
-    speed: Amount,
-    temperature: Amount,
-    choices: Choices,
+    rollers: Rollers, oil: Oil, force: Amount, speed: Amount, temperature: Amount, choices: Choices
 ) -> xr.Dataset:
     """All variables of the film table in SI units, and the oil's viscosity.
 

@@ -75,8 +75,7 @@ _LongestWavelength = Annotated[
     quantity_or_words("m", f"the words `{AUTOMATIC_WAVELENGTH}`", f"^{AUTOMATIC_WAVELENGTH}$"),
 ]
 _ShortestWavelength = Annotated[
-    float | str,
-    quantity_or_words("m", "a number of grid points such as `10 points`", " points$"),
+    float | str, quantity_or_words("m", "a number of grid points such as `10 points`", " points$")
 ]
 _Skewness = Annotated[float, quantity(None, least=-3.0, most=3.0)]
 _Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
