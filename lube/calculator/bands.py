@@ -40,8 +40,8 @@ class Assumptions:
     rollers, oil
         As in `lube.contact_probability`.
     choices : Choices
-        Model; of several contact models the first.
-    film_formula, seed
+        Model; of several contact models, or film formulas, the first.
+    seed
         As in `lube.contact_probability`.
     left_out : sequence of str, optional
         Factors, or groups of them, on which the answer does not depend: their ranges are ignored.
@@ -65,7 +65,6 @@ class Assumptions:
         rollers: Rollers,
         oil: Oil,
         choices: Choices,
-        film_formula: str,
         seed: int,
         left_out: Sequence[str] = (),
     ) -> None:
@@ -88,11 +87,11 @@ class Assumptions:
             rollers=rollers.given_pair,
             roughness=rollers.roughness,
             boundary_layer=rollers.layer,
-            film_formulas=(film_formula,),
+            film_formulas=tuple(np.ravel(choices.film_formula).tolist()[:1]),
             **asdict(choices.gap),
             load_sharing=choices.load_sharing,
-            inlet_shear_heating=choices.inlet_shear_heating,
-            inlet_meniscus=choices.inlet_meniscus or "none",
+            inlet_shear_heating=choices.inlet.shear_heating,
+            inlet_meniscus=choices.inlet.meniscus or "none",
             contact_model=choices.models,
             seed=seed,
             uncertainty=uncertain,

@@ -1,7 +1,7 @@
 """Choices of the model of an answer, and what it takes where none is given."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypedDict, get_args
 
 import numpy as np
@@ -42,31 +42,47 @@ SEED = 1
 
 
 @dataclass(frozen=True)
-class Choices:
-    """What film and contact are made of, apart from the film formula.
+class Inlet:
+    """What thins the film at the inlet.
 
     Attributes
     ----------
+    shear_heating : str
+        How heating at the inlet thins the film, as in a study.
+    meniscus : str, tuple, pint.Quantity or float, optional
+        Distance of the oil's meniscus before the line of centres, as given or, in `Choices`, in m;
+        None if the contact is fully flooded.
+    """
+
+    shear_heating: types.InletHeating = "none"
+    meniscus: types.OneAmount | float | None = None
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What film and contact are made of.
+
+    Attributes
+    ----------
+    film_formula : str or sequence of str
+        Film formula, or several.
     gap : Gap
         How film and roughness make up the gap.
     models : tuple of str
         Contact models.
     load_sharing : str
         ``none``, or ``iterated``: the asperities carry a share of the load.
-    inlet_shear_heating : str
-        How heating at the inlet thins the film, as in a study.
-    inlet_meniscus : float, optional
-        Distance of the oil's meniscus before the line of centres, m; None if the contact is fully
-        flooded.
+    inlet : Inlet
+        What thins the film at the inlet.
     slip : float or xarray.DataArray
         Slide-to-roll ratio, of all operating points or of each.
     """
 
+    film_formula: str | Sequence[str] = FORMULA
     gap: Gap = PLAIN
     models: tuple[types.ContactModel, ...] = ("line",)
     load_sharing: types.LoadSharing = "none"
-    inlet_shear_heating: types.InletHeating = "none"
-    inlet_meniscus: float | None = None
+    inlet: Inlet = field(default_factory=Inlet)
     slip: types.Values = 0.0
 
     @property
@@ -74,15 +90,31 @@ class Choices:
         """Whether surfaces touch, so that the film comes with their share of the load."""
         return "surface" in self.models or self.load_sharing != "none"
 
+    @property
+    def formulas(self) -> list[str]:
+        """The film formulas.
+
+        Raises
+        ------
+        StudyError
+            If they are neither a name nor a list of names, or have a name twice.
+        """
+        names = np.ravel(self.film_formula).tolist()
+        if not names or not isinstance(names[0], str):
+            came = f"got {shown(self.film_formula)}"
+            raise StudyError(f"film_formula: {came}, need a name, or a list of them")
+        no_repetition("film_formula", names)
+        return names
+
     @classmethod
     def of(
         cls,
-        gap: Gap = PLAIN,
-        contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
-        inlet_shear_heating: types.InletHeating = "none",
-        inlet_meniscus: types.OneAmount | None = None,
-        slide_to_roll_ratio: float = 0.0,
+        film_formula: str | Sequence[str],
+        gap: Gap,
+        inlet: Inlet,
         load_sharing: types.LoadSharing = "none",
+        slide_to_roll_ratio: float = 0.0,
+        contact_model: types.ContactModel | Sequence[types.ContactModel] = "line",
     ) -> "Choices":
         """Choose by the values of a study's keys.
 
@@ -92,26 +124,24 @@ class Choices:
             If a study has no such choice, or a contact model is repeated.
         """
         slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-        film = {"load_sharing": load_sharing, "inlet_shear_heating": inlet_shear_heating}
+        film = {"load_sharing": load_sharing, "inlet_shear_heating": inlet.shear_heating}
         for name, value in (vars(gap) | film).items():
             _check_choice(name, value, get_args(Study.model_fields[name].annotation))
         models = tuple(np.ravel(contact_model).tolist())
         for model in models or [contact_model]:
             _check_choice("contact_model", model, get_args(types.ContactModel))
         no_repetition("contact_model", models)
-        if inlet_meniscus is not None:
-            inlet_meniscus = single(amount("inlet_meniscus", inlet_meniscus, "m", above=0.0))
-        return cls(gap, models, **film, inlet_meniscus=inlet_meniscus, slip=slip)
+        if inlet.meniscus is not None:
+            metres = single(amount("inlet_meniscus", inlet.meniscus, "m", above=0.0))
+            inlet = replace(inlet, meniscus=metres)
+        return cls(film_formula, gap, models, load_sharing, inlet, slip)
 
     @classmethod
     def of_smooth_rollers(
-        cls,
-        inlet_shear_heating: types.InletHeating,
-        inlet_meniscus: types.OneAmount | None,
-        slide_to_roll_ratio: float,
+        cls, film_formula: str | Sequence[str], inlet: Inlet, slide_to_roll_ratio: float
     ) -> "Choices":
         """As `of`, of a film without contact, which no lines or surfaces can refuse."""
-        choices = cls.of(PLAIN, "line", inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
+        choices = cls.of(film_formula, PLAIN, inlet, slide_to_roll_ratio=slide_to_roll_ratio)
         return replace(choices, models=())
 
 

@@ -12,8 +12,8 @@ from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import check_realisations, checked, conditions
 from lube.calculator.bands import Assumptions
-from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
-from lube.calculator.film import conditions_of, film_in_si, formula_names, of_film, with_remarks
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices, Inlet
+from lube.calculator.film import conditions_of, film_in_si, of_film, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import with_limits, with_pair_limits
@@ -146,33 +146,61 @@ def contact_probability(
     >>> bool(found.tail_breakthrough_probability_lower > 0)
     True
     """
-    gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
-    )
-    slip = choices.slip
-    pair = rollers.rough_pair(seed, gap)
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, slide_to_roll_ratio, contact_model)
     check_realisations(realisations, seed)
-    assumed = Assumptions(bands, rollers, oil, choices, formula_names(film_formula)[0], seed)
+    assumed = Assumptions(bands, rollers, oil, choices, seed)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices)
-    found = of_film(table)
-    if "line" in choices.models:
-        contact = ensemble(pair, table, realisations, slip)
-        found = joined(table, contact, pair_probabilities(pair, table, slip))
-    if "surface" in choices.models:
-        found = found.assign(of_surface(pair, table, slip))
-    if choices.has_surfaces:
-        found["surface_load_share"] = table["surface_load_share"]
+    table = film_in_si(rollers, oil, force, speed, temperature, choices)
+    pair = rollers.rough_pair(seed, gap)
+    found, _ = contact_at(table, pair, choices, realisations, choices.slip)
     if assumed.wanted:
         samples = assumed.probabilities(conditions_of(table, choices))
         found = found.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
     return with_remarks(found, table, rollers, choices.models)
 
 
-def of_surface(
-    pair: RoughPair, table: xr.Dataset, slip: xr.DataArray | float
-) -> dict[str, xr.DataArray]:
+def contact_at(
+    table: xr.Dataset, pair: RoughPair, choices: Choices, realisations: int, counted_slip: float
+) -> tuple[xr.Dataset, xr.Dataset | None]:
+    """Film and contact at some films, by the names of `contact_probability`.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        Film table, for these choices.
+    pair : RoughPair
+        The rollers.
+    choices : Choices
+        With the contact models and the slip.
+    realisations : int
+        As in `contact_probability`.
+    counted_slip : float
+        Slide-to-roll ratio of the alignments in which contact of lines is counted.
+
+    Returns
+    -------
+    found : xarray.Dataset
+        In SI units.
+    on_pairs : xarray.Dataset or None
+        Probabilities of lines as from `lube.stages.tail.pair_probabilities`; None without lines.
+    """
+    found, on_pairs = of_film(table), None
+    if "line" in choices.models:
+        contact = ensemble(pair, table, realisations, counted_slip)
+        on_pairs = pair_probabilities(pair, table, choices.slip)
+        sampled = pair_limits(on_pairs)
+        tail = {f"tail_{name}": values for name, values in sampled.items()}
+        found = found.assign(dict(contact.data_vars) | tail)
+        found = found.assign_attrs(contact.attrs | sampled.attrs)
+    if "surface" in choices.models:
+        found = found.assign(_of_surface(pair, table, choices.slip))
+    if choices.has_surfaces:
+        found["surface_load_share"] = table["surface_load_share"]
+    return found, on_pairs
+
+
+def _of_surface(pair, table, slip):
     """Contact of the surface at some films, by the names of `contact_probability`."""
     found = surface_contact(pair, table, slide_to_roll_ratio=slip)
     found = found.assign(surface_rates(found, table["entrainment_speed"]))
@@ -187,14 +215,6 @@ def of_surface(
     for end, limit in zip(LIMITS[1:], of_pair, strict=True):
         found[f"breakthrough_probability_pair{end}"] = share[0].copy(data=limit)
     return {f"surface_{name}": values for name, values in found.items()}
-
-
-def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.Dataset:
-    """Film, counted probabilities, and sampled ones, whose names begin with ``tail_``."""
-    sampled = pair_limits(on_pairs)
-    tail = {f"tail_{name}": values for name, values in sampled.items()}
-    found = of_film(table).assign(dict(contact.data_vars) | tail)
-    return found.assign_attrs(contact.attrs | sampled.attrs)
 
 
 def ensemble(pair: RoughPair, table: xr.Dataset, realisations: int, slip: float) -> xr.Dataset:

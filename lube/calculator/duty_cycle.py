@@ -16,16 +16,16 @@ from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.bands import Assumptions
-from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
-from lube.calculator.contact import ensemble, joined, of_surface
-from lube.calculator.film import check_contact, film_model, film_of_oil, of_film, with_remarks
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices, Inlet
+from lube.calculator.contact import contact_at
+from lube.calculator.film import check_contact, film_model, film_of_oil, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import with_pair_limits
 from lube.errors import DataError, located, right_one, shown
 from lube.grid.gap import Gap
 from lube.schema import LIMITS, values_with_limits
-from lube.stages.tail import pair_limits, pair_probabilities
+from lube.stages.tail import pair_limits
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
 
@@ -127,29 +127,21 @@ def duty(
     """
     columns, labels = _columns(points)
     columns["share"] = share = _shares(columns)
-    gap = Gap(film_shape, roughness_deformation)
-    slip = _slip(columns)
-    choices = Choices.of(gap, contact_model, inlet_shear_heating, inlet_meniscus, 0.0, load_sharing)
-    choices = replace(choices, slip=slip)
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, contact_model=contact_model)
+    choices = replace(choices, slip=_slip(columns))
     check_realisations(realisations, seed)
-    formula, given = one_name("film_formula", film_formula), _conditions(columns, rollers)
-    assumed = Assumptions(bands, rollers, oil, choices, formula, seed)
+    one_name("film_formula", film_formula)
+    given = _conditions(columns, rollers)
+    assumed = Assumptions(bands, rollers, oil, choices, seed)
     assumed.check(given)
-    table = _films(rollers, oil, given, formula, choices)
-    pair = rollers.rough_pair(seed, gap)
-    parts, whole = of_film(table), {}
-    if "line" in choices.models:
-        contact = ensemble(pair, table, realisations, 0.0)
-        on_pairs = pair_probabilities(pair, table, slip)
-        parts = joined(table, contact, on_pairs)
-        whole = _whole(parts, on_pairs, share, pair.spec)
+    table = _films(rollers, oil, given, choices)
+    parts, on_pairs = contact_at(table, rollers.rough_pair(seed, gap), choices, realisations, 0.0)
+    whole = {} if on_pairs is None else _whole(parts, on_pairs, share, rollers.lines)
     if "surface" in choices.models:
-        parts = parts.assign(of_surface(pair, table, slip))
         whole |= _whole_of_surface(parts, share)
-    if choices.has_surfaces:
-        parts = parts.assign(surface_load_share=table["surface_load_share"])
     if assumed.wanted:
-        samples = assumed.probabilities(given | {"slide_to_roll_ratio": slip})
+        samples = assumed.probabilities(given | {"slide_to_roll_ratio": choices.slip})
         parts = parts.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
         # Weighted first: the samples are the same at all points.
         of_cycle = (samples * share).sum("point", skipna=False)
@@ -200,11 +192,11 @@ def _whole_of_surface(parts, share):
     }
 
 
-def _films(rollers, oil, given, formula, choices):
+def _films(rollers, oil, given, choices):
     """Film table over the points, each with its own radii."""
     turning = rollers.pair.with_radii(given["radius"], given["second_radius"])
     check_contact(rollers, turning.contact_half_width(given["force"]), choices)
-    table = film_of_oil(oil, turning, given, [formula], **film_model(rollers, choices))
+    table = film_of_oil(oil, turning, given, **film_model(rollers, choices))
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     return table.assign(force=given["force"])
 

@@ -9,11 +9,11 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import Point, checked, conditions, no_repetition
-from lube.calculator.choices import FORMULA, Choices
+from lube.calculator.arguments import Point, checked, conditions
+from lube.calculator.choices import FORMULA, Choices, Inlet
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
-from lube.errors import StudyError, located, shown
+from lube.errors import StudyError, located
 from lube.grid.films import film_at
 from lube.grid.plausibility import remarks
 from lube.study.rollers import RollerPair
@@ -92,8 +92,9 @@ def film(
     >>> f"{found.film_thickness.item():.2f} um, lambda ratio {found.lambda_ratio.item():.1f}"
     '1.05 um, lambda ratio 3.7'
     """
-    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices)
+    inlet = Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of_smooth_rollers(film_formula, inlet, slide_to_roll_ratio)
+    table = film_in_si(rollers, oil, force, speed, temperature, choices)
     return with_remarks(of_film(table), table, rollers)
 
 
@@ -103,26 +104,19 @@ def of_film(table: xr.Dataset) -> xr.Dataset:
 
 
 def film_in_si(
-    rollers: Rollers,
-    oil: Oil,
-    force: Amount,
-    speed: Amount,
-    temperature: Amount,
-    film_formula: str | Sequence[str],
-    choices: Choices,
+    rollers: Rollers, oil: Oil, force: Amount, speed: Amount, temperature: Amount, choices: Choices
 ) -> xr.Dataset:
     """All variables of the film table in SI units, and the oil's viscosity.
 
     The arguments are those of `film`, `contact_probability` and `ensemble`.
     """
     point = conditions(force, speed, temperature, rollers.pair.first.radius)
-    formulas = formula_names(film_formula)
     check_contact(rollers, rollers.pair.contact_half_width(point["force"].values), choices)
-    table = film_of_oil(oil, rollers.pair, point, formulas, **film_model(rollers, choices))
+    table = film_of_oil(oil, rollers.pair, point, **film_model(rollers, choices))
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.assign_coords(force=point["force"], speed=point["speed"])
     table = table.transpose(*dims, ..., missing_dims="ignore")
-    return table if np.ndim(film_formula) else table.isel(film_formula=0)
+    return table if np.ndim(choices.film_formula) else table.isel(film_formula=0)
 
 
 def check_contact(rollers: Rollers, half_width: Values, choices: Choices) -> None:
@@ -145,7 +139,7 @@ def check_contact(rollers: Rollers, half_width: Values, choices: Choices) -> Non
         rollers, or the lines for no surfaces that could share the load.
     """
     spec, widest = rollers.lines, 2.0 * np.max(half_width).item()
-    meniscus = choices.inlet_meniscus
+    meniscus = choices.inlet.meniscus
     if meniscus is not None and meniscus <= 0.5 * widest:
         needed = f"more than {with_unit(0.5 * widest, 'm', 3)}, the half-width of the contact"
         raise StudyError(f"inlet_meniscus: got {with_unit(meniscus, 'm', 3)}, need {needed}")
@@ -160,40 +154,24 @@ def check_contact(rollers: Rollers, half_width: Values, choices: Choices) -> Non
             check_stands_for_surface(spec)
 
 
-def formula_names(film_formula: str | Sequence[str]) -> list[str]:
-    """List the film formulas of an argument.
-
-    Raises
-    ------
-    StudyError
-        If it is neither a name nor a list of names, or has a name twice.
-    """
-    formulas = np.ravel(film_formula).tolist()
-    if not formulas or not isinstance(formulas[0], str):
-        raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    no_repetition("film_formula", formulas)
-    return formulas
-
-
 def film_model(rollers: Rollers, choices: Choices) -> dict[str, Any]:
     """Arguments of `film_of_oil` for some choices."""
     choices.gap.check_slip(choices.slip)
     answered = {"line": "answered_lines", "surface": "answered_surfaces"}
     used = choices.models if choices.gap.is_answered else ()
     return {
+        "formulas": choices.formulas,
         "with_shape": choices.gap.has_shape,
         "slide_to_roll_ratio": choices.slip,
         "rough_surfaces": rollers.lines if choices.has_surfaces else None,
         "load_sharing": choices.load_sharing,
-        "inlet_shear_heating": choices.inlet_shear_heating,
-        "inlet_meniscus": choices.inlet_meniscus,
+        "inlet_shear_heating": choices.inlet.shear_heating,
+        "inlet_meniscus": choices.inlet.meniscus,
         **{answered[model]: rollers.lines for model in used},
     }
 
 
-def film_of_oil(
-    oil: Oil, pair: RollerPair, point: Point, formulas: Sequence[str], **choices: Any
-) -> xr.Dataset:
+def film_of_oil(oil: Oil, pair: RollerPair, point: Point, **choices: Any) -> xr.Dataset:
     """Film table with the oil's viscosity; the point's numbers are in N, rpm and degC.
 
     Raises
@@ -205,7 +183,7 @@ def film_of_oil(
     if heating != "none" and properties["thermal_conductivity"].isnull().any():
         needed = "need none, or an oil with thermal_conductivity"
         raise StudyError(f"inlet_shear_heating: got {heating}, {needed}")
-    table = film_at(properties, pair, point["force"], point["speed"], formulas, **choices)
+    table = film_at(properties, pair, point["force"], point["speed"], **choices)
     if heating == "none":
         del table["inlet_shear_heating_factor"]
     if choices["inlet_meniscus"] is not None:

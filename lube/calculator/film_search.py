@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer
-from lube.calculator.arguments import bare_number, check_realisations
+from lube.calculator.arguments import bare_number, check_realisations, one_name
 from lube.calculator.bands import Assumptions
 from lube.calculator.choices import Choices
 from lube.calculator.film import conditions_of, with_remarks
@@ -87,6 +87,7 @@ class FilmSearch:
         rollers, choices, seed = assumed.rollers, assumed.choices, assumed.seed
         if len(choices.models) > 1:
             raise StudyError(f"contact_model: got {shown(list(choices.models))}, need one name")
+        one_name("film_formula", choices.film_formula)
         self._share = bare_number("share", share, above=0.0, below=1.0)
         self._choices, self._gap = choices, choices.gap
         self._on_surface = "surface" in choices.models

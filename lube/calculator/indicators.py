@@ -8,7 +8,7 @@ import xarray as xr
 
 from lube.calculator.answers import Answer, variable_of
 from lube.calculator.arguments import amount, checked, single
-from lube.calculator.choices import FORMULA, Choices
+from lube.calculator.choices import FORMULA, Choices, Inlet
 from lube.calculator.film import film_in_si, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
@@ -73,8 +73,9 @@ def indicators(
     >>> f"{resistance.item():.2f} {resistance.attrs['units']}"
     '0.56 N'
     """
-    choices = Choices.of_smooth_rollers(inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio)
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, choices)
+    inlet = Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of_smooth_rollers(film_formula, inlet, slide_to_roll_ratio)
+    table = film_in_si(rollers, oil, force, speed, temperature, choices)
     pair, groups = rollers.pair, FilmGroups.of(table)
     scale = 2.0 * pair.reduced_modulus * pair.reduced_radius
     resistance = scale * groups.of_profiles("rolling_resistance")

@@ -7,7 +7,7 @@ import numpy as np
 from lube import types
 from lube.calculator.answers import Answer, described
 from lube.calculator.arguments import checked, conditions, one_name, single
-from lube.calculator.choices import FORMULA, SEED, Choices
+from lube.calculator.choices import FORMULA, SEED, Choices, Inlet
 from lube.calculator.film import check_contact, film_in_si, film_model, with_remarks
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
@@ -74,19 +74,18 @@ def trace(
     >>> f"{found.time.values[-1]:.0f} ms"
     '120 ms'
     """
-    gap, model = Gap(film_shape, roughness_deformation), one_name("contact_model", contact_model)
-    choices = Choices.of(
-        gap, model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
-    )
+    one_name("contact_model", contact_model)
+    one_name("film_formula", film_formula)
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, slide_to_roll_ratio, contact_model)
     slip = choices.slip
-    formula = one_name("film_formula", film_formula)
     one = _one_point(rollers, oil, force, speed, temperature)
-    if model == "surface":
-        film = film_in_si(rollers, oil, force, speed, temperature, formula, choices)
+    if contact_model == "surface":
+        film = film_in_si(rollers, oil, force, speed, temperature, choices)
         return _surface_trace(rollers, film, rollers.rough_pair(seed, gap), slip)
     check_contact(rollers, rollers.pair.contact_half_width(*one[2]), choices)
     options = film_model(rollers, choices) | {"slide_to_roll_ratio": [slip]}
-    table = film_table(*one, [formula], **options)
+    table = film_table(*one, **options)
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     lines = roughness_batch(rollers.lines, seed, [0])
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity, gap)

@@ -12,7 +12,7 @@ from lube import types
 from lube.calculator.answers import Answer
 from lube.calculator.arguments import amount, check_realisations, checked, one_name
 from lube.calculator.bands import Assumptions
-from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices, Inlet
 from lube.calculator.contact import ensemble
 from lube.calculator.film import conditions, conditions_of, film_in_si, of_film, with_remarks
 from lube.calculator.oil import Oil
@@ -115,15 +115,14 @@ def plan(
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else list(dict.fromkeys((model, "line")))
     _check_ridges(rig, model, rollers)
-    gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(
-        gap, models, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
-    )
-    slip, formula = choices.slip, one_name("film_formula", film_formula)
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, slide_to_roll_ratio, models)
+    one_name("film_formula", film_formula)
+    slip = choices.slip
     check_realisations(realisations, seed)
-    assumed = Assumptions(bands, rollers, oil, choices, formula, seed, CHOICES)
+    assumed = Assumptions(bands, rollers, oil, choices, seed, CHOICES)
     assumed.check(conditions(force, speed, temperature, rollers.pair.first.radius))
-    table = film_in_si(rollers, oil, force, speed, temperature, formula, choices)
+    table = film_in_si(rollers, oil, force, speed, temperature, choices)
     reading = _reading_error(rollers, table, gap, slip, rig, thresholds.values, seed)
     records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, gap)
     if model == "surface":
@@ -133,7 +132,7 @@ def plan(
     else:
         found, size, ratio = _on_lines(pair, table, realisations, slip, records)
     error = planning.relative_error(found.probability, size, ratio[:, None], reading)
-    by_coefficient = _film_by_coefficient(oil, rollers, table, formula, choices.inlet_meniscus)
+    by_coefficient = _film_by_coefficient(oil, rollers, table, choices)
     widths = {}
     for name, deviation in _unknown(assumed, conditions_of(table, choices), table).items():
         both = np.hypot(error.reshape(-1, size.size), deviation)
@@ -174,7 +173,7 @@ def _on_lines(pair, table, realisations, slip, turns):
     return found, size, planning.line_ratios(pair, table, slip, turns)
 
 
-def _film_by_coefficient(oil, rollers, table, film_formula, inlet_meniscus):
+def _film_by_coefficient(oil, rollers, table, choices):
     """Slope of the film over the pressure-viscosity coefficient, at each operating point."""
     # Heating does not depend on the coefficient.
     slope = planning.film_by_coefficient(
@@ -182,8 +181,8 @@ def _film_by_coefficient(oil, rollers, table, film_formula, inlet_meniscus):
         rollers.pair,
         table["force"],
         table["speed"],
-        film_formula,
-        inlet_meniscus=inlet_meniscus,
+        choices.film_formula,
+        inlet_meniscus=choices.inlet.meniscus,
     )
     return slope.transpose(*table["film_thickness"].dims).values.ravel()
 

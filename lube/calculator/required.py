@@ -17,16 +17,16 @@ import xarray as xr
 
 from lube import types
 from lube.calculator.answers import Answer
-from lube.calculator.arguments import amount, checked, one_name, rotation_speed, single
+from lube.calculator.arguments import amount, checked, rotation_speed, single
 from lube.calculator.bands import Assumptions
-from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices, Inlet
 from lube.calculator.film import film_in_si
 from lube.calculator.film_search import FilmSearch, labelled
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.ehl.film_formulas import formula
 from lube.grid.film_profiles import scaled_film
-from lube.grid.gap import Gap
+from lube.grid.gap import PLAIN, Gap
 from lube.grid.load_sharing import surface_load_share
 from lube.physics.pressure_laws import ROELANDS_VISCOSITY
 
@@ -90,9 +90,9 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    choices = Choices.of(contact_model=contact_model)
+    choices = Choices.of(FORMULA, PLAIN, Inlet(), contact_model=contact_model)
     left_out = "oil", "film", "speed", "temperature"
-    assumed = Assumptions(bands, rollers, Oil(_ANY_OIL), choices, FORMULA, seed, left_out)
+    assumed = Assumptions(bands, rollers, Oil(_ANY_OIL), choices, seed, left_out)
     search = FilmSearch(assumed, share, realisations)
     force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
@@ -102,7 +102,7 @@ def required_film(
         return _ANY | {"force": force, "film_thickness": film}
 
     found = search.films(half_width, points_at)
-    film = film_in_si(rollers, Oil(_ANY_OIL), (force, "N"), "100 rpm", "60 degC", FORMULA, choices)
+    film = film_in_si(rollers, Oil(_ANY_OIL), (force, "N"), "100 rpm", "60 degC", choices)
     factor = xr.DataArray(found["film_thickness"][0]) / film["film_thickness"]
     film = scaled_film(film, factor, has_shape=False).assign(
         lambda_ratio=factor * film["lambda_ratio"]
@@ -162,23 +162,20 @@ def required_viscosity(
         Which argument, what came, what is needed; or that no viscosity is enough.
     """
     rotation = single(rotation_speed(speed, rollers.pair.first.radius))
-    one = one_name("film_formula", film_formula)
 
     def table(factors, choices):
         # Formulas depend on the product of viscosity and speed, so the speed is varied for both.
         # Heating does not.
-        speeds, is_heated = (rotation * factors, "rpm"), choices.inlet_shear_heating != "none"
-        if choices.gap.is_plain and not (is_heated or formula(one).depends_on_oil):
-            return film_in_si(rollers, oil, force, speeds, temperature, one, choices)
+        speeds, is_heated = (rotation * factors, "rpm"), choices.inlet.shear_heating != "none"
+        if choices.gap.is_plain and not (is_heated or formula(film_formula).depends_on_oil):
+            return film_in_si(rollers, oil, force, speeds, temperature, choices)
         thicker = _Thicker(oil, xr.DataArray(factors, dims="factor"))
-        found = film_in_si(rollers, thicker, force, speed, temperature, one, choices)
+        found = film_in_si(rollers, thicker, force, speed, temperature, choices)
         return found.assign_coords(viscosity_factor=("factor", factors))
 
-    gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
-    )
-    assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["viscosity"])
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, slide_to_roll_ratio, contact_model)
+    assumed = Assumptions(bands, rollers, oil, choices, seed, ["viscosity"])
     search = FilmSearch(assumed, share, realisations)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors, film = search.along(table, FACTORS, tried)
@@ -235,16 +232,13 @@ def required_speed(
     LubeError
         Which argument, what came, what is needed; or that no speed is enough.
     """
-    one = one_name("film_formula", film_formula)
 
     def table(speeds, choices):
-        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
+        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, choices)
 
-    gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
-    )
-    assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["speed"])
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, slide_to_roll_ratio, contact_model)
+    assumed = Assumptions(bands, rollers, oil, choices, seed, ["speed"])
     search = FilmSearch(assumed, share, realisations)
     films, speeds, film = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
@@ -299,16 +293,13 @@ def required_temperature(
     LubeError
         Which argument, what came, what is needed; or that no temperature is low enough.
     """
-    one = one_name("film_formula", film_formula)
 
     def table(temperatures, choices):
-        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
+        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), choices)
 
-    gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
-    )
-    assumed = Assumptions(bands, rollers, oil, choices, one, seed, ["temperature"])
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, slide_to_roll_ratio, contact_model)
+    assumed = Assumptions(bands, rollers, oil, choices, seed, ["temperature"])
     search = FilmSearch(assumed, share, realisations)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found, film = search.along(table, levels, "temperature of this oil", is_rising=False)

@@ -13,9 +13,9 @@ from scipy.interpolate import PchipInterpolator
 
 from lube import types
 from lube.calculator.answers import Answer
-from lube.calculator.arguments import checked, one_name, single
+from lube.calculator.arguments import checked, single
 from lube.calculator.bands import Assumptions
-from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices
+from lube.calculator.choices import FORMULA, REALISATIONS, SEED, Choices, Inlet
 from lube.calculator.film import conditions_of, film_in_si
 from lube.calculator.film_search import FilmSearch, check_known, labelled
 from lube.calculator.oil import Oil
@@ -85,16 +85,13 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    one = one_name("film_formula", film_formula)
-    gap = Gap(film_shape, roughness_deformation)
-    choices = Choices.of(
-        gap, contact_model, inlet_shear_heating, inlet_meniscus, slide_to_roll_ratio, load_sharing
-    )
-    assumed = Assumptions(bands, rollers, oil, choices, one, seed, _HEIGHTS)
+    gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
+    choices = Choices.of(film_formula, gap, inlet, load_sharing, slide_to_roll_ratio, contact_model)
+    assumed = Assumptions(bands, rollers, oil, choices, seed, _HEIGHTS)
     search = FilmSearch(assumed, share, realisations)
 
     def film_of(rollers, choices):
-        return film_in_si(rollers, oil, force, speed, temperature, one, choices)
+        return film_in_si(rollers, oil, force, speed, temperature, choices)
 
     film = film_of(rollers, choices)
     own = single(film["lambda_ratio"])

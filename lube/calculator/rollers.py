@@ -15,19 +15,14 @@ from lube.study.field_types import validate
 from lube.study.roller_lines import band_in_words, line_spec
 from lube.units import parse_quantity
 
-_MODELS = (
-    ("radius", "young_modulus", "poisson_ratio"),
-    ("rms_roughness", "ra_roughness", "topography"),
-    (
-        "hurst_exponent long_cutoff short_cutoff roll_off_wavelength skewness kurtosis lay_ratio "
-        "lay_angle"
-    ).split(),
-)
-"""Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
+_SMOOTH = ("radius", "young_modulus", "poisson_ratio")
+"""Arguments for the first roller, apart from the heights of its roughness."""
+_WAVES = (*rollers.OwnRoughness.model_fields, "points")
+"""Arguments for the roughness of both rollers, apart from its heights."""
 _LENGTHS = ("longest_wavelength", "shortest_wavelength")
 _LAYER = ("critical_thickness", "shear_strength")
 _PARTS = {
-    "roughness": (rollers.Roughness, (*_MODELS[2], *_LENGTHS, "points")),
+    "roughness": (rollers.Roughness, _WAVES),
     "boundary_layer": (rollers.BoundaryLayer, _LAYER),
 }
 """Parts of a study, each with its class and the arguments that it sets."""
@@ -197,7 +192,8 @@ def _check_parts(given):
 
 def _pair(given):
     """Geometry, material and heights of both rollers as given."""
-    first, heights = ({name: given[name] for name in names} for names in _MODELS[:2])
+    first = {name: given[name] for name in _SMOOTH}
+    heights = {name: given[name] for name in rollers.ROUGHNESS_KEYS}
     second = given["second"]
     if not isinstance(second, Mapping | None):
         needed = "need a dict of the values that differ, such as {'radius': '30 mm'}"
@@ -215,7 +211,7 @@ def _pair(given):
 
 def _roughness(given, radius):
     """Roughness of rollers by single arguments; `radius` is that of the first roller."""
-    waves = {name: given[name] for name in (*_MODELS[2], "points")}
+    waves = {name: given[name] for name in _WAVES}
     # Lengths only: a study's other choices depend on its grid.
     waves |= {name: _metres(name, given[name]) for name in _LENGTHS}
     if waves["lay_ratio"] is None:  # not stated

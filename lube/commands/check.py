@@ -13,7 +13,7 @@ from lube.grid.plausibility import overview, remarks
 from lube.pipeline.command_line import changes_of, study_of_command
 from lube.pipeline.study_files import StudyFiles
 from lube.report.pages import count, render
-from lube.stages.film import film_table
+from lube.stages.film import make as make_film
 from lube.stages.tail import why_counted
 from lube.study.oil_properties import lubricant_table
 from lube.study.resolve import merged
@@ -75,16 +75,9 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
 
 def _film(study):
     """Film table by the study's first formula, without the oil's answer to lines."""
-    grid = study.operating_grid
-    return film_table(
-        lubricant_table(study.lubricants, grid.temperature),
-        study.rough_rollers,
-        grid.force,
-        grid.speed,
-        study.film_formulas[:1],
-        slide_to_roll_ratio=study.slips,
-        **study.film_model | {"answered_lines": None},
-    )
+    some = {"film_formulas": study.film_formulas[:1], "roughness_deformation": "none"}
+    oils = lubricant_table(study.lubricants, study.operating_grid.temperature)
+    return make_film(study.model_copy(update=some), {"lubricant": oils})
 
 
 def _own_remarks(path, study, changes):

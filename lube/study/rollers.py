@@ -75,8 +75,7 @@ _LongestWavelength = Annotated[
     quantity_or_words("m", f"the words `{AUTOMATIC_WAVELENGTH}`", f"^{AUTOMATIC_WAVELENGTH}$"),
 ]
 _ShortestWavelength = Annotated[
-    float | str,
-    quantity_or_words("m", "a number of grid points such as `10 points`", " points$"),
+    float | str, quantity_or_words("m", "a number of grid points such as `10 points`", " points$")
 ]
 _Skewness = Annotated[float, quantity(None, least=-3.0, most=3.0)]
 _Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
@@ -268,9 +267,6 @@ class Roughness(OwnRoughness):
     squared
     """
     lay_ratio: _LayRatio = 1.0
-    """how many times longer than wide the ridges of the surface are, 1 for an isotropic surface;
-    wavelengths, cutoffs and Hurst exponent are those across the ridges
-    """
     points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
     """points N around the first roller"""
     height_step: Length

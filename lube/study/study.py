@@ -13,6 +13,7 @@ from typing import Annotated, Any
 from pydantic import Field, StrictInt, WithJsonSchema, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
+from lube import types
 from lube.errors import StudyError, located, shown
 from lube.grid.gap import Gap
 from lube.grid.levels import SAME, level_index, rolling
@@ -30,14 +31,6 @@ from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes
 from lube.study.uncertainty import FilmFormula, Uncertainty
-from lube.types import (
-    ContactModel,
-    File,
-    FilmShape,
-    InletHeating,
-    LoadSharing,
-    RoughnessDeformation,
-)
 from lube.units import with_unit
 
 
@@ -69,11 +62,11 @@ class Study(StrictModel):
     """names of shipped records, or paths of your own YAML records"""
     film_formulas: tuple[FilmFormula, ...] = Field(min_length=1)
     """names from the registry of film formulas"""
-    film_shape: FilmShape = "flat"
+    film_shape: types.FilmShape = "flat"
     """flat, and cut off at the edges of the contact, as in the paper; or computed by Reynolds'
     equation, with the gap outside the contact
     """
-    inlet_shear_heating: InletHeating = "none"
+    inlet_shear_heating: types.InletHeating = "none"
     """how heating of the oil at the inlet thins the film, the more so the more the rollers slip: by
     the formula of Zhu and Cheng (1988) or that of Wilson and Sheu (1983), which differ with slip,
     or by the equation behind the latter
@@ -82,18 +75,18 @@ class Study(StrictModel):
     """distance of the oil's meniscus before the line of centres, more than the half-width of the
     contact; without it the contact is fully flooded
     """
-    load_sharing: LoadSharing = "none"
+    load_sharing: types.LoadSharing = "none"
     """none, the oil carries the whole load, as in the paper; or iterated, the asperities of the
     rollers' surfaces carry a share of it, and the film is that of the rest
     """
     operating_grid: OperatingGrid
     roughness: Roughness
-    roughness_deformation: RoughnessDeformation = "none"
+    roughness_deformation: types.RoughnessDeformation = "none"
     """none, as in the paper; computed, the oil deforms each wave of the roughness by the linear
     response of Reynolds' equation about the computed film; or venner-1997, the oil flattens long
     waves by the formula of Venner et al., for pure rolling and Moes' load numbers above 20
     """
-    contact_model: tuple[ContactModel, ...] = Field(("line",), min_length=1)
+    contact_model: tuple[types.ContactModel, ...] = Field(("line",), min_length=1)
     """line, as in the paper; surface, the rough surface that the line stands for, over the length
     of the rollers; or a list of both. Rollers whose ridges run along rolling have no such line, and
     need [surface]
@@ -256,7 +249,7 @@ class Study(StrictModel):
         """Names of the study's files that a target of Snakemake makes, such as ``computed``."""
         return [name for name, row in STAGES.items() if row.target == target and self.has(name)]
 
-    def datasets_in(self, folder: File) -> list[str]:
+    def datasets_in(self, folder: types.File) -> list[str]:
         """Names of the study's results, and of those made on request that a folder holds.
 
         Some of the latter are made in every run, since results or the explorer are made from them.
@@ -530,7 +523,7 @@ class Study(StrictModel):
 
 
 def load_study(
-    path: File, changes: dict | None = None, readings: dict[str, dict] | None = None
+    path: types.File, changes: dict | None = None, readings: dict[str, dict] | None = None
 ) -> Study:
     """Read and check a study.
 

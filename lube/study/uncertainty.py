@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Generic, Literal, TypeVar, get_args
+from typing import Annotated, ClassVar, Generic, Literal, TypeVar
 
 from pydantic import Field, field_validator, model_validator
 
@@ -278,14 +278,13 @@ class Uncertainty(StrictModel):
         return [factor for factor in each if factor.given and factor.group != "electrical"]
 
 
-_KINDS = {name: get_args(field.annotation)[0] for name, field in Uncertainty.model_fields.items()}
-CHOICES = [name for name, kind in _KINDS.items() if issubclass(kind, Choice)]
-"""Factors that are choices, which cannot be measured."""
 BAND = "longest_wavelength", "shortest_wavelength"
 """Factors that are ends of the band of wavelengths."""
 _EXTRAS = {name: field.json_schema_extra for name, field in Uncertainty.model_fields.items()}
 UNITS = {name: extra["unit"] for name, extra in _EXTRAS.items() if "unit" in extra}
 """Unit of the study's value of each quantity, empty for a pure number."""
+CHOICES = [name for name in _EXTRAS if name not in UNITS]
+"""Factors that are choices, which cannot be measured."""
 
 
 def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:

@@ -19,19 +19,19 @@ def test_the_study_of_the_answer_has_the_rollers_lines(rollers, oil):
     levels = {name: np.array([1.0]) for name in ("force", "speed", "temperature")}
     cut = lube.Rollers(radius="50 mm", rms_roughness="0.2 um", long_cutoff="0.25 mm")
     for each in (rollers, cut):
-        study = Assumptions(KELVIN, each, oil, Choices(), "paper", 1).study(levels)
+        study = Assumptions(KELVIN, each, oil, Choices("paper"), 1).study(levels)
         assert study.line_spec == each.lines
 
 
 def test_ranges_on_which_an_answer_does_not_depend_are_left_out(rollers, oil):
     levels = {name: np.array([1.0]) for name in ("force", "speed", "temperature")}
-    some = Assumptions(True, rollers, oil, Choices(), "paper", 1, ["oil", "speed"])
+    some = Assumptions(True, rollers, oil, Choices("paper"), 1, ["oil", "speed"])
     left = {factor.name for factor in some.study(levels).uncertainty.factors()}
     assert RANGES.keys() - left == {"viscosity", "pressure_viscosity_coefficient", "speed"}
     with pytest.raises(
         LubeError, match=r"^bands: got temperature, need an uncertain quantity or choice on"
     ):
-        Assumptions(KELVIN, rollers, oil, Choices(), "paper", 1, ["temperature"])
+        Assumptions(KELVIN, rollers, oil, Choices("paper"), 1, ["temperature"])
 
 
 def test_the_bands_enclose_the_answer_and_what_is_less_certain_has_a_wider_one(rollers, oil):

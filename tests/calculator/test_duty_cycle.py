@@ -8,7 +8,7 @@ import lube
 from lube import LubeError, Rollers
 from lube.calculator import bands
 from lube.calculator.bands import Assumptions
-from lube.calculator.choices import FORMULA, Choices
+from lube.calculator.choices import Choices
 
 RUNS = {"realisations": 8, "seed": 2}
 POINTS = {
@@ -288,7 +288,7 @@ def test_all_points_of_a_cycle_share_the_assumptions(rollers, oil):
     table = POINTS | {"speed [rpm]": [100.0, 20.0, 100.0], "share": [1.0, 1.0, 1.0]}
     table = table | {"temperature [degC]": [50.0, 90.0, 60.0]}
     found = lube.duty(table, rollers, oil, **RUNS, bands=KELVIN)
-    assumptions = Assumptions(KELVIN, rollers, oil, Choices(), FORMULA, RUNS["seed"])
+    assumptions = Assumptions(KELVIN, rollers, oil, Choices(), RUNS["seed"])
     cycle = np.zeros(32)
     for force, speed, level in zip(*list(table.values())[:3], strict=True):
         point = {"force": force, "speed": speed, "temperature": level}

@@ -9,7 +9,7 @@ import lube
 from lube import LubeError, Rollers
 from lube.calculator import bands, film_search, required
 from lube.calculator.bands import Assumptions
-from lube.calculator.choices import FORMULA, Choices
+from lube.calculator.choices import Choices
 
 pytestmark = pytest.mark.usefixtures("few_samples")
 
@@ -106,7 +106,7 @@ def test_the_band_is_that_of_what_each_sample_needs(rollers, oil):
     share = 0.02
     found = lube.required_speed(rollers, oil, **without("speed"), share=share, **ONE, bands=True)
     speeds = found["speed"].item() * np.geomspace(0.3, 3.0, 15)
-    sought = Assumptions(True, rollers, oil, Choices(), FORMULA, ONE["seed"], ["speed"])
+    sought = Assumptions(True, rollers, oil, Choices(), ONE["seed"], ["speed"])
     samples = sought.probabilities(
         {"force": 400.0, "speed": xr.DataArray(speeds, dims="speed")} | {"temperature": 60.0}
     )
