@@ -3,6 +3,7 @@
 import functools
 import inspect
 from collections.abc import Callable, Iterable, Mapping
+from numbers import Integral, Real
 from typing import TypeVar
 
 import numpy as np
@@ -62,6 +63,24 @@ def _meant(name, parameters):
     names = [each for each in parameters if each != "self"]
     longer = [each for each in names if name in each]
     return f"did you mean {' or '.join(longer)}?" if longer else right_one(name, names)
+
+
+def in_words(value: object) -> object:
+    """Write a quantity as text, as the models of a study read it; also those in a dict.
+
+    Examples
+    --------
+    >>> in_words({"radius": (50, "mm"), "poisson_ratio": 0.3})
+    {'radius': '50.0 mm', 'poisson_ratio': 0.3}
+    """
+    match value:
+        case Mapping():
+            return {name: in_words(each) for name, each in value.items()}
+        case (Real() as number, str(unit)):
+            return f"{float(number)!r} {unit}"
+        case _ if hasattr(value, "magnitude"):
+            return f"{float(value.magnitude)!r} {value.units}"
+    return value
 
 
 def amount(
@@ -165,16 +184,24 @@ def rotation_speed(speed: Amount, radius: float) -> xr.DataArray:
     StudyError
         If the unit is that of neither, or the speed is not above 0.
     """
-    try:
-        amount("speed", speed, "m/s", may_repeat=True)
-    except LubeError:
-        try:
-            return amount("speed", speed, "rpm", above=0.0)
-        except LubeError as error:
-            raise StudyError(f"{error}, or 'm/s'") from None
-    entrainment = amount("speed", speed, "m/s", above=0.0)
-    rotation = entrainment * (60.0 / (2.0 * np.pi * radius))
+    units = [unit for unit in ("m/s", "rpm") if _is_in(speed, unit)]
+    if not units:
+        needed = "need rotation speeds, such as '100 rpm', or entrainment speeds, such as '0.5 m/s'"
+        raise StudyError(f"speed: got {shown(speed)}, {needed}")
+    found = amount("speed", speed, units[0], above=0.0)
+    if units == ["rpm"]:
+        return found
+    rotation = found * (60.0 / (2.0 * np.pi * radius))
     return rotation.assign_coords(speed=rotation) if rotation.dims else rotation
+
+
+def _is_in(value, unit):
+    """Whether a value converts to a unit."""
+    try:
+        _numbers(value, unit)
+    except LubeError:
+        return False
+    return True
 
 
 def no_repetition(name: str, values: Iterable[str]) -> None:
@@ -228,8 +255,8 @@ def check_realisations(realisations: int, seed: int) -> int:
         If one of them is not.
     """
     for name, number, least in (("realisations", realisations, 1), ("seed", seed, 0)):
-        if isinstance(number, bool) or not isinstance(number, int) or number < least:
+        if isinstance(number, bool) or not isinstance(number, Integral) or number < least:
             raise StudyError(f"{name}: got {shown(number)}, need a whole number, at least {least}")
     if realisations > RIG_REALISATIONS:
         raise StudyError(f"realisations: got {realisations}, need at most {RIG_REALISATIONS}")
-    return realisations
+    return int(realisations)

@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from lube import plots
-from lube.errors import LubeError
+from lube.errors import LubeError, right_one
 from lube.schema import LIMITS
 
 _COUNTED, _SAMPLED = "breakthrough_probability", "tail_breakthrough_probability"
@@ -44,10 +44,13 @@ def draw(found: xr.Dataset, x: str | None = None, y: str | None = None) -> Axes:
         If the answer has no such dimension or variable, or a single value only.
     """
     y = y or next(name for name in (*_SHOWN, *found.data_vars) if name in found)
-    dims = found[y].dims if y in found else ()
-    dims = sorted(dims, key=lambda name: (name not in _ALONG, -found.sizes[name]))
-    if not dims or x not in (None, *dims):
-        raise LubeError(f"plot: got x={x}, y={y}, need a variable and one of its dimensions")
+    if y not in found.data_vars:
+        raise LubeError(f"plot: got y={y!r}, {right_one(y, map(str, found.data_vars))}")
+    dims = sorted(found[y].dims, key=lambda name: (name not in _ALONG, -found.sizes[name]))
+    if not dims:
+        raise LubeError(f"plot: got a single value of {y}, need several to draw a curve")
+    if x not in (None, *dims):
+        raise LubeError(f"plot: got x={x!r}, {right_one(x, map(str, dims))}")
     x = x or dims[0]
     with plt.rc_context():
         plots.use_style()

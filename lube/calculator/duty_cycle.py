@@ -72,8 +72,9 @@ def duty(
     Parameters
     ----------
     points : pandas.DataFrame, dict, list of dict or path of a CSV file
-        One row for each duty point. Columns of numbers carry their unit, as in ``force [N]``; in
-        other columns each value does, as in ``"800 N"``. Needed are ``force``, ``temperature``,
+        One row for each duty point; a dict of single values is one point. Columns of numbers carry
+        their unit, as in ``force [N]``; in other columns each value does, as in ``"800 N"``. Needed
+        are ``force``, ``temperature``,
         and one of ``speed`` (rotation of the first roller in pure rolling, such as rpm),
         ``entrainment_speed``, or the two of ``surface_speed`` and ``second_surface_speed``.
         Optional are ``radius`` and ``second_radius``, by default those of `rollers`, and
@@ -144,7 +145,7 @@ def duty(
         samples = assumed.probabilities(given | {"slide_to_roll_ratio": choices.slip})
         parts = parts.assign(assumed.limits(samples, "assumed_breakthrough_probability"))
         # Weighted first: the samples are the same at all points.
-        of_cycle = (samples * share).sum("point", skipna=False)
+        of_cycle = _weighted(samples, share)
         whole |= assumed.limits(of_cycle, "whole_assumed_probability")
     found = xr.Dataset(columns | dict(parts.data_vars) | whole, attrs=parts.attrs)
     return _with_labels(with_remarks(found, table, rollers, choices.models), labels)
@@ -158,6 +159,11 @@ def _shares(columns):
     return share / share.sum()
 
 
+def _weighted(values, share):
+    """Mean over the cycle; a point that takes no time does not count, even if it is not known."""
+    return (values.where(share > 0.0, 0.0) * share).sum("point", skipna=False)
+
+
 def _slip(columns):
     """Slide-to-roll ratio of each point."""
     names = ("surface_speed", "second_surface_speed")
@@ -168,10 +174,10 @@ def _slip(columns):
 def _whole(parts, on_pairs, share, lines):
     """Probabilities and rate of lines over the whole cycle, with their limits."""
     windows = lines.independent_windows(2.0 * parts["contact_half_width"].max().item())
-    counted = (parts["breakthrough_probability"] * share).sum("point", skipna=False)
+    counted = _weighted(parts["breakthrough_probability"], share)
     limits = probability_interval(counted.values, windows)
     # Summed on each pair of lines first: the lines are the same at all points.
-    sampled = pair_limits((on_pairs * share).sum("point", skipna=False))
+    sampled = pair_limits(_weighted(on_pairs, share))
     whole = values_with_limits("whole_probability", limits)
     on_pair = counted.to_dataset(name="breakthrough_probability")
     of_pair = with_pair_limits(on_pair, xr.DataArray(windows))
@@ -186,10 +192,7 @@ def _whole_of_surface(parts, share):
     """Probability and rate of the surface over the whole cycle, with their limits."""
     kinds = [f"{kind}{end}" for kind in ("probability", "rate") for end in LIMITS]
     of_points = {name: parts[f"surface_breakthrough_{name}"] for name in (*kinds, *_OF_PAIR)}
-    return {
-        f"whole_surface_{name}": (each * share).sum(skipna=False)
-        for name, each in of_points.items()
-    }
+    return {f"whole_surface_{name}": _weighted(each, share) for name, each in of_points.items()}
 
 
 def _films(rollers, oil, given, choices):
@@ -227,6 +230,8 @@ def _conditions(columns, rollers):
 def _columns(points):
     """Numbers of a table by column, over ``point`` in the units of `_COLUMNS`; then its labels."""
     try:
+        if isinstance(points, Mapping) and not any(map(np.ndim, points.values())):
+            points = [points]
         is_file = isinstance(points, str | Path)
         frame = pd.read_csv(points, skipinitialspace=True) if is_file else pd.DataFrame(points)
     except (OSError, ValueError) as error:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer, described
-from lube.calculator.arguments import amount, checked
+from lube.calculator.arguments import amount, checked, in_words
 from lube.errors import LubeError, RecordError, located, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.study.field_types import validate
@@ -17,7 +17,7 @@ from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_
 from lube.study.oil_properties import lubricant_table
 from lube.study.viscosity_checks import check_points
 from lube.study.viscosity_points import read_viscosity_csv
-from lube.types import Amount, File
+from lube.types import Amount, File, OneAmount
 from lube.units import parse_quantity
 
 _SOURCE = "assumed: given in Python"
@@ -25,6 +25,8 @@ _SOURCE = "assumed: given in Python"
 
 class Oil:
     """An oil, from a lubricant record or from numbers.
+
+    Quantities are given as text, such as ``"870 kg/m^3"``, as ``(870, "kg/m^3")`` or by pint.
 
     Parameters
     ----------
@@ -72,11 +74,11 @@ class Oil:
         self,
         name: File | None = None,
         *,
-        viscosity: Mapping[str, str] | File | None = None,
-        density: str | None = None,
+        viscosity: Mapping[str, OneAmount] | File | None = None,
+        density: OneAmount | None = None,
         base: str | None = None,
-        pressure_viscosity: str | None = None,
-        thermal_conductivity: str | None = None,
+        pressure_viscosity: OneAmount | None = None,
+        thermal_conductivity: OneAmount | None = None,
         temperature_range: Amount | None = None,
     ) -> None:
         if (name is None) == (viscosity is None):
@@ -89,8 +91,11 @@ class Oil:
             "pressure_viscosity": pressure_viscosity,
             "thermal_conductivity": thermal_conductivity,
         }
+        if None not in (base, pressure_viscosity):
+            came = f"got {shown(base)} together with pressure_viscosity"
+            raise RecordError(f"Oil: base: {came}, which it would give, need only one of the two")
         if name is None:
-            self.record = _record(viscosity, **own)
+            self.record = _record(in_words(viscosity), **in_words(own))
         else:
             needed = "together with a lubricant record, which sets it, need only one of the two"
             for key, value in own.items():

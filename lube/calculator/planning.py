@@ -228,7 +228,7 @@ def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):
     resistance = rollers.resistivity / spec.spacing
     errors = np.full((thresholds.size, len(traces)), np.nan)
     for number, (contact, step, plate) in enumerate(zip(traces, *of_points, strict=True)):
-        revolution = Revolution(contact, step, resistance, plate, (seed, number))
+        revolution = Revolution(contact, step, resistance, plate, (seed, 0))
         shares, by_threshold = read_shares(revolution.voltage(known), experiment, known)
         read = dict(zip(READINGS, shares, strict=True)) | {"threshold": by_threshold[place.ravel()]}
         if true := np.count_nonzero(contact) / contact.size:

@@ -6,14 +6,15 @@ import inspect
 import math
 from collections.abc import Mapping
 
-from lube.calculator.arguments import amount, checked
+from lube import types
+from lube.calculator.arguments import amount, checked, in_words
 from lube.contact.rough_pair import RoughPair
 from lube.errors import StudyError, shown
 from lube.grid.gap import Gap
 from lube.study import rollers
 from lube.study.field_types import validate
-from lube.study.roller_lines import band_in_words, line_spec
-from lube.units import parse_quantity
+from lube.study.roller_lines import band_in_words, check_points, line_spec
+from lube.units import parse_quantity, with_unit
 
 _SMOOTH = ("radius", "young_modulus", "poisson_ratio")
 """Arguments for the first roller, apart from the heights of its roughness."""
@@ -30,6 +31,8 @@ _PARTS = {
 
 class Rollers:
     """Two rollers in line contact: geometry, material, roughness and boundary layer.
+
+    Quantities are given as text, such as ``"50 mm"``, as ``(50, "mm")`` or by pint.
 
     Parameters
     ----------
@@ -115,40 +118,40 @@ class Rollers:
     @checked
     def __init__(
         self,
-        radius: str,
-        rms_roughness: str | None = None,
-        length: str = "10 mm",
+        radius: types.OneAmount,
+        rms_roughness: types.OneAmount | None = None,
+        length: types.OneAmount = "10 mm",
         *,
-        young_modulus: str = "210 GPa",
+        young_modulus: types.OneAmount = "210 GPa",
         poisson_ratio: float = 0.3,
         second: Mapping[str, object] | None = None,
-        longest_wavelength: str = rollers.LONGEST_WAVELENGTH,
-        shortest_wavelength: str = rollers.SHORTEST_WAVELENGTH,
-        long_cutoff: str | None = None,
-        short_cutoff: str | None = None,
+        longest_wavelength: types.OneAmount = rollers.LONGEST_WAVELENGTH,
+        shortest_wavelength: types.OneAmount = rollers.SHORTEST_WAVELENGTH,
+        long_cutoff: types.OneAmount | None = None,
+        short_cutoff: types.OneAmount | None = None,
         hurst_exponent: float = 0.7,
-        ra_roughness: str | None = None,
-        composite_rms_roughness: str | None = None,
+        ra_roughness: types.OneAmount | None = None,
+        composite_rms_roughness: types.OneAmount | None = None,
         topography: Mapping[str, object] | None = None,
-        roll_off_wavelength: str | None = None,
+        roll_off_wavelength: types.OneAmount | None = None,
         skewness: float = 0.0,
         kurtosis: float = 3.0,
         lay_ratio: float | None = None,
-        lay_angle: str | None = None,
+        lay_angle: types.OneAmount | None = None,
         points: int | None = None,
-        critical_thickness: str = "5 nm",
-        shear_strength: str = "1 MPa",
+        critical_thickness: types.OneAmount = "5 nm",
+        shear_strength: types.OneAmount = "1 MPa",
         roughness: rollers.Roughness | None = None,
         boundary_layer: rollers.BoundaryLayer | None = None,
-        resistivity: str = "0.2 uohm*m",
+        resistivity: types.OneAmount = "0.2 uohm*m",
     ) -> None:
-        given = dict(locals())
+        given = {name: in_words(value) for name, value in locals().items()}
         _check_parts(given)
         self.given_pair = _pair(given)
         layer = {name: given[name] for name in _LAYER}
         self.layer = boundary_layer or validate(rollers.BoundaryLayer, layer, "Rollers", StudyError)
         self.resistivity = math.nan
-        if resistivity != rollers.INSULATOR:
+        if given["resistivity"] != rollers.INSULATOR:
             self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
         self.roughness = roughness or _roughness(given, self.given_pair.first.radius)
         if self.roughness.longest_wavelength == rollers.AUTOMATIC_WAVELENGTH:
@@ -218,7 +221,9 @@ def _roughness(given, radius):
         del waves["lay_ratio"]
     if waves["points"] is None:
         shortest = parse_quantity(waves["shortest_wavelength"], "m")
-        waves["points"] = rollers.grid_points(radius, shortest)
+        waves["points"] = points = rollers.grid_points(radius, shortest)
+        lengths = (with_unit(length, "m", 3) for length in (radius, shortest))
+        check_points(points, "Rollers: radius: got {} with waves down to {}".format(*lengths))
     waves["height_step"] = "1 pm"
     return validate(rollers.Roughness, waves, "Rollers", StudyError)
 

@@ -162,8 +162,8 @@ class PressureViscosity(Sourced):
 class ThermalConductivity(Sourced):
     """Thermal conductivity, the same at all temperatures."""
 
-    value: Annotated[float, quantity("W/m/K", above=0.0)]
-    """thermal conductivity"""
+    value: Annotated[float, quantity("W/m/K", above=0.0, most=1.0)]
+    """thermal conductivity; that of oils is 0.1 to 0.2 W/(m K), that of water 0.6"""
 
 
 class TemperatureRange(Sourced):

@@ -8,6 +8,7 @@ import numpy as np
 from lube.errors import StudyError, located
 from lube.study.line_spec import LineSpec, RoughLine
 from lube.study.rollers import AUTOMATIC_WAVELENGTH, ROLLERS, RollerPair, Roughness
+from lube.study.size_limits import LEAST_POINTS, MOST_POINTS
 from lube.surfaces.lay import from_other_side
 from lube.types import Values
 from lube.units import with_unit
@@ -83,6 +84,7 @@ def _rough_line(rollers, roughness, name, rms, spacing, width):
     with located(key("shortest_wavelength")):
         longest, shortest = own.wavelengths(width, spacing)
     points = round(roughness.points * roller.radius / rollers.first.radius)
+    check_points(points, f"rollers.{name}.radius: got {with_unit(roller.radius, 'm', 3)}")
     if roller.topography and roller.topography.is_line:
         longest = roller.topography.long_cutoff or points * spacing
     roll_off = (None if roller.topography else own.roll_off_wavelength) or longest
@@ -229,6 +231,28 @@ def _check_band(longest, shortest, roll_off, points, spacing, key):
         raise StudyError(
             f"{key('roll_off_wavelength')}: got {_length(roll_off)}, need one from the shortest to "
             f"the longest wavelength, {_length(shortest)} to {_length(longest)}"
+        )
+
+
+def check_points(points: int, came: str) -> None:
+    """Refuse too few or too many grid points around a roller.
+
+    Parameters
+    ----------
+    points : int
+        Number of points.
+    came : str
+        Beginning of the message.
+
+    Raises
+    ------
+    StudyError
+        With the number, and what is needed.
+    """
+    if not LEAST_POINTS <= points <= MOST_POINTS:
+        raise StudyError(
+            f"{came}, {points:.3g} grid points around the roller, need {LEAST_POINTS} to "
+            f"{MOST_POINTS:.2g}"
         )
 
 

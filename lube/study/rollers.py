@@ -13,7 +13,7 @@ from pydantic import Field, StrictInt, model_validator
 from lube.physics.hertz import contact_half_width, reduced_modulus, reduced_radius
 from lube.study.field_types import Length, StrictModel, bounded, quantity, quantity_or_words
 from lube.study.roller_topography import RollerTopography
-from lube.study.size_limits import MOST_POINTS
+from lube.study.size_limits import LEAST_POINTS, MOST_POINTS
 from lube.types import Values
 from lube.units import parse_number
 
@@ -267,7 +267,7 @@ class Roughness(OwnRoughness):
     squared
     """
     lay_ratio: _LayRatio = 1.0
-    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
+    points: Annotated[StrictInt, Field(ge=LEAST_POINTS, le=MOST_POINTS)]
     """points N around the first roller"""
     height_step: Length
     """heights and films are integer multiples of this length, so sums are exact"""

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 MOST_NUMBERS = 10**9
 """Largest array, in numbers: 8 GB."""
 
-MOST_POINTS = 2**24
-"""Largest number of points around a roller: 19 nm apart on the paper's rollers."""
+LEAST_POINTS, MOST_POINTS = 64, 2**26
+"""Least and largest number of points around a roller; the latter are 5 nm apart on the paper's."""
 
 MOST_BATCHES = 10_000
 """Largest number of batches of realisations: Snakemake plans a job for each."""
@@ -44,7 +44,6 @@ def check_sizes(study: "Study") -> None:
     combinations = tables * len(study.film_formulas) * study.realisations
     rig_key = "rig.revolutions" if rig.drift > 0.0 else "rig.pairs"
     sizes = [  # key that decides it, number, what it counts, limit
-        ("rollers.second.radius", points[1], "points around the roller", MOST_POINTS),
         ("batch_size", len(study.batches), "batches", MOST_BATCHES),
         ("kept_realisations", pair * len(study.kept_realisations), "heights", MOST_NUMBERS),
         ("batch_size", pair * batch, "heights in a batch", MOST_NUMBERS),

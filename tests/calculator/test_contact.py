@@ -230,7 +230,9 @@ def test_threads_leave_the_options_of_xarray_as_they_were(rollers, oil):
     ("change", "message"),
     [
         ({"force": "400"}, "force: got '400', need a number with its unit, such as '1 N'"),
-        ({"speed": "3 kg"}, "or 'm/s'"),
+        ({"speed": "3 kg"}, "speed: got '3 kg', need rotation speeds, such as '100 rpm', or"),
+        ({"speed": ["3 rpm", "1 m/s"]}, "speed: got ['3 rpm', '1 m/s'], need rotation speeds,"),
+        ({"speed": "0 rpm"}, "speed: got 0 rpm, need a value above 0 rpm"),
         ({"speed": "0 m/s"}, "speed: got 0 m/s, need a value above 0 m/s"),
         ({"temperature": "300 K"}, "got 26.85 degC, need 40 to 100 degC"),
         ({"film_formula": "moe"}, "unknown film formula 'moe', did you mean 'moes'?"),

@@ -47,6 +47,22 @@ def test_the_whole_of_one_point_is_that_point(rollers, oil):
         assert found[f"whole_probability{ending}"].item() == pytest.approx(expected, rel=1e-12)
 
 
+def test_a_point_of_no_time_does_not_count_even_if_its_film_is_not_known(rollers, oil):
+    """The film of so slow a speed is not computed."""
+    slow = POINTS | {"speed [rpm]": [100.0, 60.0, 1e-5]}
+    found = lube.duty(slow, rollers, oil, film_formula="computed", **RUNS)
+    assert np.isnan(found["film_thickness"]).values.tolist() == [False, False, True]
+    assert "film: unknown at 1 of 3 operating points" in found.attrs["remarks"]
+    for name in ("whole_probability", "whole_tail_probability_upper", "whole_tail_rate"):
+        assert found[name] > 0.0
+
+
+def test_a_dict_of_single_values_is_one_point(rollers, oil):
+    one = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
+    found, same = (lube.duty(each, rollers, oil, **RUNS) for each in (one, [one]))
+    assert found.identical(same)
+
+
 TAIL = [f"{name}{end}" for name in ("probability", "rate") for end in ("", "_lower", "_upper")]
 
 

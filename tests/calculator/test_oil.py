@@ -3,6 +3,7 @@
 import pickle
 
 import numpy as np
+import pint
 import pytest
 from studies import OIL
 
@@ -46,6 +47,16 @@ def test_an_oil_of_a_table_of_dynamic_viscosities(tmp_path):
     assert of_numbers["dynamic_viscosity"].item() == pytest.approx(100.0, rel=1e-12)
 
 
+def test_quantities_are_texts_pairs_or_of_pint():
+    unit = pint.UnitRegistry()
+    texts = Oil(viscosity=TWO, density="890 kg/m^3", pressure_viscosity="18 1/GPa")
+    viscosity = {"40 degC": (335.0, "mm^2/s"), "100 degC": 38.3 * unit.mm**2 / unit.s}
+    others = Oil(viscosity=viscosity, density=(890, "kg/m^3"), pressure_viscosity=18 / unit.GPa)
+    for name in ("dynamic_viscosity", "density", "pressure_viscosity_coefficient"):
+        one, other = (each.properties("60 degC")[name].item() for each in (texts, others))
+        assert other == pytest.approx(one, rel=1e-12)
+
+
 def test_it_shows_itself_and_travels_between_processes():
     oil = Oil(OIL)
     assert repr(oil) == "<Oil: Mobilgear SHC XMP 320, valid from 40 to 100 degC>"
@@ -74,6 +85,14 @@ def test_it_shows_itself_and_travels_between_processes():
         ),
         (lambda: Oil(viscosity="30 mm^2/s"), "got '30 mm^2/s', need viscosities by temperature"),
         (lambda: Oil(viscosity=30.0), "viscosity: got 30.0, need viscosities by temperature"),
+        (
+            lambda: Oil(viscosity=TWO, base="PAO", pressure_viscosity="18 1/GPa"),
+            "Oil: base: got 'PAO' together with pressure_viscosity, which it would give, need",
+        ),
+        (
+            lambda: Oil(viscosity=TWO, thermal_conductivity="140 W/m/K"),
+            "Oil: thermal_conductivity.value: got 140 W/m/K, need a value above 0 and at most 1 W/m/K",
+        ),
         (lambda: Oil(viscosity=TWO, base="olive"), "Oil: base: got 'olive', need one of mineral"),
         (lambda: Oil(viscosity=TWO, base=["PAO"]), "Oil: base: got ['PAO'], need one of mineral"),
         (lambda: Oil(OIL, temp_range=1), "Oil: temp_range: unknown argument, did you mean"),

@@ -53,6 +53,15 @@ def test_durations_and_thresholds_are_compared_in_one_plan(rollers, oil, found):
     np.testing.assert_array_equal(exact.half_width.sel(turns=1.0), found.half_width)
 
 
+def test_a_rig_reads_each_point_as_by_itself(rollers, oil):
+    several = lube.plan(rollers, oil, **POINT, realisations=4, rig="mtm-ecr").reading_error
+    assert several.dims == ("force",) and several.size > 1
+    for force in several["force"].values:
+        given = POINT | {"force": (float(force), "N")}
+        alone = lube.plan(rollers, oil, **given, realisations=4, rig="mtm-ecr").reading_error
+        assert alone.item() == several.sel(force=force).item() > 0.0
+
+
 def test_an_ecr_meter_shows_the_mean_voltage_whatever_the_threshold(rollers, oil):
     thresholds = {"threshold": ["100 ohm", "1 ohm"], "realisations": 4}
     plan = lube.plan(rollers, oil, **POINT, rig="mtm-ecr", **thresholds)

@@ -3,6 +3,7 @@
 import pickle
 
 import numpy as np
+import pint
 import pytest
 from studies import CONFIG
 
@@ -97,6 +98,19 @@ def test_a_height_measured_within_cutoffs_is_that_of_the_waves_within_them():
     assert own.pair.rms_heights[0] == 2e-7 < own.pair.rms_heights[1]
 
 
+def test_quantities_are_texts_pairs_or_of_pint():
+    unit, second = pint.UnitRegistry(), {"radius": "30 mm", "rms_roughness": "0.1 um"}
+    texts = Rollers("50 mm", "0.2 um", young_modulus="200 GPa", second=second)
+    others = Rollers(
+        (50, "mm"),
+        0.2 * unit.um,
+        young_modulus=200 * unit.GPa,
+        second={"radius": 3 * unit.cm, "rms_roughness": (np.float64(100.0), "nm")},
+    )
+    assert repr(others) == repr(texts)
+    assert others.pair.reduced_modulus == pytest.approx(texts.pair.reduced_modulus, rel=1e-12)
+
+
 def test_they_show_themselves_and_travel_between_processes():
     rollers = Rollers("50 mm", "0.2 um")
     assert repr(rollers) == (
@@ -113,6 +127,18 @@ def test_they_show_themselves_and_travel_between_processes():
         (
             lambda: Rollers("50 mm", "0.2 um", shortest_wavelength="10 points"),
             "shortest_wavelength: got '10 points', need a length",
+        ),
+        (
+            lambda: Rollers("0.2 um", "50 mm"),
+            "Rollers: radius: got 0.2 µm with waves down to 3.14 µm, 4 grid points around",
+        ),
+        (
+            lambda: Rollers("50 m", "0.2 um"),
+            "Rollers: radius: got 50 m with waves down to 3.14 µm, 1e+09 grid points around",
+        ),
+        (
+            lambda: Rollers("50 mm", "0.2 um", second={"radius": "1 km"}),
+            "rollers.second.radius: got 1 km, 2e+10 grid points around the roller, need 64",
         ),
         (lambda: Rollers("50 mm", "0.2 um", "1"), "length: got '1', need a number with its unit"),
         (

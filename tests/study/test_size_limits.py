@@ -38,7 +38,7 @@ def test_a_study_that_is_too_large_is_refused(load):
     for changes, message in [
         (
             {"rollers.second.radius": "1 km"},
-            "rollers.second.radius: 4e+08 points around the roller, need",
+            "rollers.second.radius: got 1 km, 4e+08 grid points around the roller, need",
         ),
         (FEW | {"realisations": 10**6}, "batch_size: 100000 batches, need 10000 at most"),
         (FEW | {"batch_size": 10**5} | FINE, "batch_size: 2e+10 heights in a batch, need 1e+09"),
