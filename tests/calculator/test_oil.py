@@ -91,7 +91,7 @@ def test_it_shows_itself_and_travels_between_processes():
         ),
         (
             lambda: Oil(viscosity=TWO, thermal_conductivity="140 W/m/K"),
-            "Oil: thermal_conductivity.value: got 140 W/m/K, need a value above 0 and at most 1 W/m/K",
+            "Oil: thermal_conductivity.value: got 140 W/m/K, need a value above 0 and at most 1 W",
         ),
         (lambda: Oil(viscosity=TWO, base="olive"), "Oil: base: got 'olive', need one of mineral"),
         (lambda: Oil(viscosity=TWO, base=["PAO"]), "Oil: base: got ['PAO'], need one of mineral"),
