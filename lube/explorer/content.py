@@ -77,7 +77,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     """
     film, tail, uncertain = map(datasets.get, ("film", "tail", "sensitivity"))
     levels = {name: tail[name].values.tolist() for name in (*CHOICES, MODEL) if name in tail.dims}
-    traces = _traces(datasets, levels)
+    traces = list(_traces(datasets, levels))
     return {
         "study": film.attrs["study"],
         "levels": {
@@ -214,23 +214,19 @@ def _pair_limits(tail):
     if "surface_pair_deviation" not in tail:
         return {}
     limits = revolution_limits(tail.sel({MODEL: "surface"}))
-    known = (f"breakthrough_probability_pair{end}" for end in LIMITS[1:])
-    described = (
-        _variable(each.rename(n), "contact") for n, each in zip(known, limits, strict=True)
-    )
-    names = (f"surface_pair{end}" for end in LIMITS[1:])
-    return {n: each | {"file": "tail.nc"} for n, each in zip(names, described, strict=True)}
+    described = {}
+    for end, limit in zip(LIMITS[1:], limits, strict=True):
+        of_lines = _variable(limit.rename(f"breakthrough_probability_pair{end}"), "contact")
+        described[f"surface_pair{end}"] = of_lines | {"file": "tail.nc"}
+    return described
 
 
 def _traces(datasets, levels):
     """Describe the traces of lines and of surfaces, as far as the study asks for their contact."""
-    traces = []
     for kind, model in (("trace", "line"), ("surface_trace", "surface")):
         if kind in datasets and model in levels.get(MODEL, ["line"]):
-            points = range(datasets[kind].sizes["operating_point"])
-            rows = (datasets[kind].isel(operating_point=row) for row in points)
-            traces += [_trace(row, levels, model) for row in rows]
-    return traces
+            for row in range(datasets[kind].sizes["operating_point"]):
+                yield _trace(datasets[kind].isel(operating_point=row), levels, model)
 
 
 def _trace(point, levels, model):
