@@ -84,7 +84,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
             name: {"values": values, "names": level_names(name, values)}
             for name, values in levels.items()
         },
-        "variables": _variables(datasets) | _load_shares(datasets) | _pair_limits(tail),
+        "variables": _variables(datasets) | _further_variables(datasets),
         "marks": _marks(film, tail, datasets.get("contact")),
         "factors": [] if uncertain is None else uncertain["factor"].values.tolist(),
         "sampled": not tail.attrs["remarks"],
@@ -198,26 +198,19 @@ def _records(comparison):
     return {"origin": comparison["origin"].item(), "by_model": by_model, "rows": rows}
 
 
-def _load_shares(datasets):
-    """Describe the shares of the load on the asperities, of lines and of surfaces."""
-    shares = {}
+def _further_variables(datasets):
+    """Describe shares of the load on asperities, and limits for one pair in a revolution."""
+    film, tail, described = datasets["film"], datasets["tail"], {}
     if "contact" in datasets:
         share = datasets["contact"]["contact_load_share"].mean("realisation", keep_attrs=True)
-        shares["contact_load_share"] = _variable(share, "contact")
-    if "surface_load_share" in datasets["film"]:
-        shares["surface_load_share"] = _variable(datasets["film"]["surface_load_share"], "film")
-    return shares
-
-
-def _pair_limits(tail):
-    """Describe the limits of the share of one pair of surfaces in a revolution."""
-    if "surface_pair_deviation" not in tail:
-        return {}
-    limits = revolution_limits(tail.sel({MODEL: "surface"}))
-    described = {}
-    for end, limit in zip(LIMITS[1:], limits, strict=True):
-        of_lines = _variable(limit.rename(f"breakthrough_probability_pair{end}"), "contact")
-        described[f"surface_pair{end}"] = of_lines | {"file": "tail.nc"}
+        described["contact_load_share"] = _variable(share, "contact")
+    if "surface_load_share" in film:
+        described["surface_load_share"] = _variable(film["surface_load_share"], "film")
+    if "surface_pair_deviation" in tail:
+        limits = revolution_limits(tail.sel({MODEL: "surface"}))
+        for end, limit in zip(LIMITS[1:], limits, strict=True):
+            of_lines = _variable(limit.rename(f"breakthrough_probability_pair{end}"), "contact")
+            described[f"surface_pair{end}"] = of_lines | {"file": "tail.nc"}
     return described
 
 
