@@ -1,14 +1,24 @@
 from lube.report import ON_ASSUMPTIONS, SUMMARISED
 from lube.pipeline.command_line import PAPER, same_study
 
-# Chapter of the report that holds these pages.
-ABOUT_THE_STUDY = "About the study"
+# Pages about the study.
 PAGES = {
     "configuration": "every value, as written and as understood",
     "assumptions": "what the paper leaves open, and what is used instead",
+    "run_times": "time and memory of every job",
 }
 # Parts of the report's start page.
 PARTS = ("facts", "findings", "limits", "files", "pipeline")
+
+
+def page_in_report(page):
+    """Show a page in the report, in the chapter about the study."""
+    return report(
+        result(f"report/{page}.html"),
+        category="About the study",
+        caption="../report/page.rst",
+        labels={"Page": page.replace("_", " ").capitalize(), "Shows": PAGES[page]},
+    )
 
 
 rule pages:
@@ -23,15 +33,7 @@ rule pages:
         sources=script_sources("pages"),
     output:
         **{part: result(f"report/{part}.html") for part in PARTS},
-        **{
-            page: report(
-                result(f"report/{page}.html"),
-                category=ABOUT_THE_STUDY,
-                caption="../report/page.rst",
-                labels={"Page": page.capitalize(), "Shows": shown},
-            )
-            for page, shown in PAGES.items()
-        },
+        **{page: page_in_report(page) for page in ("configuration", "assumptions")},
     log:
         result("logs/pages.log"),
     benchmark:
@@ -53,12 +55,7 @@ rule times:
         result("explorer.html"),
         sources=script_sources("times"),
     output:
-        report(
-            result("report/run_times.html"),
-            category=ABOUT_THE_STUDY,
-            caption="../report/page.rst",
-            labels={"Page": "Run times", "Shows": "time and memory of every job"},
-        ),
+        page_in_report("run_times"),
     log:
         result("logs/times.log"),
     benchmark:
