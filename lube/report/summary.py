@@ -106,15 +106,12 @@ def _film(film, first):
     """Points by regime and outside validity ranges, and what the inlet does to the film."""
     invalid = ~film["in_validity_range"].astype(bool)
     starved = film.sel(first).get("starvation_factor")
-    heating = 1.0 - film["inlet_shear_heating_factor"].min().item()
+    counts = np.bincount(film["regime"].values.ravel(), minlength=len(REGIMES)).tolist()
+    names = [name.replace("_", " and ") for name in REGIMES]
     return {
-        "regimes": {
-            name.replace("_", " and "): points
-            for flag, name in enumerate(REGIMES)
-            if (points := int((film["regime"] == flag).sum()))
-        },
+        "regimes": {name: count for name, count in zip(names, counts, strict=True) if count},
         "outside": invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict(),
-        "heating": heating if math.isfinite(heating) else None,
+        "heating": 1.0 - film["inlet_shear_heating_factor"].min().item(),
         "starving": 1.0 - starved.min().item() if starved is not None else None,
     }
 
