@@ -230,11 +230,9 @@ def _trace(point, levels, model):
     reach = round(CLOSE_UP * crossing / (time[1] - time[0]))
     peak = int(length.argmax())
     close = slice(max(peak - reach, 0), peak + reach + 1)
-    at = {name: levels[name].index(point[name].item()) for name in CHOICES}
-    if MODEL in levels:
-        at[MODEL] = levels[MODEL].index(model)
+    at = {name: point[name].item() for name in CHOICES} | {MODEL: model}
     return {
-        "at": at,
+        "at": {name: values.index(at[name]) for name, values in levels.items()},
         "share": float(np.mean(length > 0.0)),
         "crossing": crossing,
         "way": float(speed * (time[-1] + time[1])),
