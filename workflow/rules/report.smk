@@ -1,24 +1,22 @@
 from lube.report import ON_ASSUMPTIONS, SUMMARISED
 from lube.pipeline.command_line import PAPER, same_study
 
-# Pages about the study.
+# Pages of the report on the study as a whole.
 PAGES = {
-    "configuration": "every value, as written and as understood",
-    "assumptions": "what the paper leaves open, and what is used instead",
-    "run_times": "time and memory of every job",
-}
-# Parts of the report's start page.
-PARTS = ("facts", "findings", "limits", "files", "pipeline")
-
-
-def page_in_report(page):
-    """Show a page in the report, in the chapter about the study."""
-    return report(
+    page: report(
         result(f"report/{page}.html"),
         category="About the study",
         caption="../report/page.rst",
-        labels={"Page": page.replace("_", " ").capitalize(), "Shows": PAGES[page]},
+        labels={"Page": page.replace("_", " ").capitalize(), "Shows": shown},
     )
+    for page, shown in {
+        "configuration": "every value, as written and as understood",
+        "assumptions": "what the paper leaves open, and what is used instead",
+        "run_times": "time and memory of every job",
+    }.items()
+}
+# Parts of the report's start page.
+PARTS = ("facts", "findings", "limits", "files", "pipeline")
 
 
 rule pages:
@@ -33,7 +31,7 @@ rule pages:
         sources=script_sources("pages"),
     output:
         **{part: result(f"report/{part}.html") for part in PARTS},
-        **{page: page_in_report(page) for page in ("configuration", "assumptions")},
+        **{page: PAGES[page] for page in ("configuration", "assumptions")},
     log:
         result("logs/pages.log"),
     benchmark:
@@ -55,7 +53,7 @@ rule times:
         result("explorer.html"),
         sources=script_sources("times"),
     output:
-        page_in_report("run_times"),
+        PAGES["run_times"],
     log:
         result("logs/times.log"),
     benchmark:
