@@ -26,7 +26,7 @@ rule all:
         [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ALWAYS),
         result("explorer.html"),
-        [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],
+        [result(f"report/{page}.html") for page in PAGES],
     message:
         f"Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
 

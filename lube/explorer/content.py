@@ -77,14 +77,14 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     """
     film, tail, uncertain = map(datasets.get, ("film", "tail", "sensitivity"))
     levels = {name: tail[name].values.tolist() for name in (*CHOICES, MODEL) if name in tail.dims}
-    traces = _traces(datasets, levels)
+    traces = list(_traces(datasets, levels))
     return {
         "study": film.attrs["study"],
         "levels": {
             name: {"values": values, "names": level_names(name, values)}
             for name, values in levels.items()
         },
-        "variables": _variables(datasets) | _load_shares(datasets) | _pair_limits(tail),
+        "variables": _variables(datasets) | _further_variables(datasets),
         "marks": _marks(film, tail, datasets.get("contact")),
         "factors": [] if uncertain is None else uncertain["factor"].values.tolist(),
         "sampled": not tail.attrs["remarks"],
@@ -198,39 +198,28 @@ def _records(comparison):
     return {"origin": comparison["origin"].item(), "by_model": by_model, "rows": rows}
 
 
-def _load_shares(datasets):
-    """Describe the shares of the load on the asperities, of lines and of surfaces."""
-    shares = {}
+def _further_variables(datasets):
+    """Describe shares of the load on asperities, and limits for one pair in a revolution."""
+    film, tail, described = datasets["film"], datasets["tail"], {}
     if "contact" in datasets:
         share = datasets["contact"]["contact_load_share"].mean("realisation", keep_attrs=True)
-        shares["contact_load_share"] = _variable(share, "contact")
-    if "surface_load_share" in datasets["film"]:
-        shares["surface_load_share"] = _variable(datasets["film"]["surface_load_share"], "film")
-    return shares
-
-
-def _pair_limits(tail):
-    """Describe the limits of the share of one pair of surfaces in a revolution."""
-    if "surface_pair_deviation" not in tail:
-        return {}
-    limits = revolution_limits(tail.sel({MODEL: "surface"}))
-    known = (f"breakthrough_probability_pair{end}" for end in LIMITS[1:])
-    described = (
-        _variable(each.rename(n), "contact") for n, each in zip(known, limits, strict=True)
-    )
-    names = (f"surface_pair{end}" for end in LIMITS[1:])
-    return {n: each | {"file": "tail.nc"} for n, each in zip(names, described, strict=True)}
+        described["contact_load_share"] = _variable(share, "contact")
+    if "surface_load_share" in film:
+        described["surface_load_share"] = _variable(film["surface_load_share"], "film")
+    if "surface_pair_deviation" in tail:
+        limits = revolution_limits(tail.sel({MODEL: "surface"}))
+        for end, limit in zip(LIMITS[1:], limits, strict=True):
+            of_lines = _variable(limit.rename(f"breakthrough_probability_pair{end}"), "contact")
+            described[f"surface_pair{end}"] = of_lines | {"file": "tail.nc"}
+    return described
 
 
 def _traces(datasets, levels):
     """Describe the traces of lines and of surfaces, as far as the study asks for their contact."""
-    traces = []
     for kind, model in (("trace", "line"), ("surface_trace", "surface")):
         if kind in datasets and model in levels.get(MODEL, ["line"]):
-            points = range(datasets[kind].sizes["operating_point"])
-            rows = (datasets[kind].isel(operating_point=row) for row in points)
-            traces += [_trace(row, levels, model) for row in rows]
-    return traces
+            for row in range(datasets[kind].sizes["operating_point"]):
+                yield _trace(datasets[kind].isel(operating_point=row), levels, model)
 
 
 def _trace(point, levels, model):
@@ -241,11 +230,9 @@ def _trace(point, levels, model):
     reach = round(CLOSE_UP * crossing / (time[1] - time[0]))
     peak = int(length.argmax())
     close = slice(max(peak - reach, 0), peak + reach + 1)
-    at = {name: levels[name].index(point[name].item()) for name in CHOICES}
-    if MODEL in levels:
-        at[MODEL] = levels[MODEL].index(model)
+    at = {name: point[name].item() for name in CHOICES} | {MODEL: model}
     return {
-        "at": at,
+        "at": {name: values.index(at[name]) for name, values in levels.items()},
         "share": float(np.mean(length > 0.0)),
         "crossing": crossing,
         "way": float(speed * (time[-1] + time[1])),

@@ -7,6 +7,7 @@ import xarray as xr
 from bokeh import models
 from bokeh.palettes import Cividis256
 from bokeh.plotting import figure
+from bokeh.transform import log_cmap
 
 from lube.explorer.content import CHOICES, MODEL
 from lube.physics.regimes import regime
@@ -257,9 +258,7 @@ def _master_map(master, span, sources):
     lines = _edges(1e6 * np.array(master["contact_width"]))
     mean = np.array(master["mean"], dtype=float).ravel()
     rows, columns = np.divmod(np.arange(mean.size), ratios.size)
-    mapper = models.LogColorMapper(
-        palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white"
-    )
+    colour = log_cmap("mean", Cividis256, _SHARES[0], _SHARES[-1], nan_color="white")
     plot = _plot(
         "Lambda ratio", "Contact width (µm)",
         x_axis_type="log", x_range=span, y_range=(lines[0], lines[-1]),
@@ -274,10 +273,9 @@ def _master_map(master, span, sources):
     }
     plot.quad(
         source=fields, left="left", right="right", bottom="bottom", top="top",
-        fill_color={"field": "mean", "transform": mapper},
-        line_color={"field": "mean", "transform": mapper},  # without outlines, gaps would show
+        fill_color=colour, line_color=colour,  # without outlines, gaps would show
     )  # fmt: skip
-    bar = models.ColorBar(color_mapper=mapper, width=12, padding=4)
+    bar = models.ColorBar(color_mapper=colour.transform, width=12, padding=4)
     _label(bar, list(_SHARES), _percent)
     plot.add_layout(bar, "right")
     _all_points(plot, sources, "lambda", "width")

@@ -38,28 +38,23 @@ def results_folder(study: File | None = None, default: str = "paper") -> Path:
     DataError
         If there is no such folder with a dataset.
     """
-    if DRAWN_BY in os.environ:
-        return Path.cwd()
     here = Path.cwd()
+    if DRAWN_BY in os.environ:
+        return here
+    bases = [folder / "results" for folder in (here, *here.parents, ROOT)]  # the nearest first
+    places = []
     if study is None:
-        for folder in (here, here / "data", here.parent, here.parent / "data"):
-            if _holds_results(folder):
-                return folder
+        places = [here, here / "data", here.parent, here.parent / "data"]
         study = os.environ.get(CHOSEN, default)
-    for folder in (Path(study).absolute(), *(base / study for base in _bases(here))):
+    for folder in (*places, Path(study).absolute(), *(base / study for base in bases)):
         if _holds_results(folder):
             return folder
-    folders = [folder for base in _bases(here) for folder in sorted(base.glob("*"))]
+    folders = [folder for base in bases for folder in sorted(base.glob("*"))]
     there = list(dict.fromkeys(folder.name for folder in folders if _holds_results(folder)))
     needed = "which has no results yet: run snakemake first"
     if there:
         needed = f"{right_one(study, there)} ({CHOSEN} chooses the study)"
     raise DataError(f"study: got {shown(str(study))}, {needed}")
-
-
-def _bases(here):
-    """Folders that hold the results of several studies, the nearest first."""
-    return [folder / "results" for folder in (here, *here.parents, ROOT)]
 
 
 def _holds_results(folder):

@@ -76,9 +76,7 @@ def _keys(schema, definitions, path="", section=""):
 def _resolve(field, definitions):
     """Follow references, optional fields and lists to the innermost field; and whether a list."""
     many = False
-    while True:
-        if "format" in field:  # says in words what is needed
-            return field, many
+    while "format" not in field:  # it says in words what is needed
         if "$ref" in field:
             field = definitions[field["$ref"].split("/")[-1]]
         elif "anyOf" in field:
@@ -86,7 +84,8 @@ def _resolve(field, definitions):
         elif field.get("type") == "array" and isinstance(field.get("items"), dict):
             field, many = field["items"], True
         else:
-            return field, many
+            break
+    return field, many
 
 
 def _value(field, inner):

@@ -80,21 +80,21 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     """
     film, comparison = map(results.get, ("film", "comparison"))
     first = {"film_formula": study.film_formulas[0]}
+    of_first = film.sel(first)
     lines = results["contact"] if "line" in study.contact_model else None
     contacts = {model: _of_model(model, study, results) for model in study.contact_model}
     return render(
         "findings.md",
         study=study,
-        film=film.sel(first),
+        film=of_first,
         shortest=study.line_spec.shortest_wavelength,
         **_film(film, first),
         contacts={model: _contact(each.sel(first)) for model, each in contacts.items()},
         trends={model: _trends(each.sel(first)) for model, each in contacts.items()},
         spread=None if lines is None else _spread(film, lines, first),
-        held=_held(film, lines, first),
+        held=_held(of_first, None if lines is None else lines.sel(first)),
+        deformed=_deformed(of_first, results.get("tail"), contacts),
         limits=model_limits,
-        deformed={model: _deformed(model, film, results, first) for model in contacts},
-        separated=_separated(film, contacts, first),
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=_traces(study, film, contacts, comparison),
         refused=_lines(results, "refused"),
@@ -106,15 +106,12 @@ def _film(film, first):
     """Points by regime and outside validity ranges, and what the inlet does to the film."""
     invalid = ~film["in_validity_range"].astype(bool)
     starved = film.sel(first).get("starvation_factor")
-    heating = 1.0 - film["inlet_shear_heating_factor"].min().item()
+    counts = np.bincount(film["regime"].values.ravel(), minlength=len(REGIMES)).tolist()
+    names = [name.replace("_", " and ") for name in REGIMES]
     return {
-        "regimes": {
-            name.replace("_", " and "): points
-            for flag, name in enumerate(REGIMES)
-            if (points := int((film["regime"] == flag).sum()))
-        },
+        "regimes": {name: count for name, count in zip(names, counts, strict=True) if count},
         "outside": invalid.sum(set(invalid.dims) - {"film_formula"}).to_series().to_dict(),
-        "heating": heating if math.isfinite(heating) else None,
+        "heating": 1.0 - film["inlet_shear_heating_factor"].min().item(),
         "starving": 1.0 - starved.min().item() if starved is not None else None,
     }
 
@@ -169,23 +166,23 @@ def _spread(film, contact, first):
 
 def _of_model(model, study, results):
     """Probabilities by one contact model, with the band of the assumptions if it was made."""
-    contact = {"line": _of_lines, "surface": _of_surfaces}[model](study, results)
+    contact = {"line": _of_lines, "surface": _of_surfaces}[model](results)
     if "sensitivity" in results:
         contact = _assumed(contact, model, study, results["sensitivity"])
     return contact
 
 
-def _of_lines(study, results):
+def _of_lines(results):
     """Probabilities of lines, and the scatter between pairs if there are several."""
     contact = results["contact"]
     pairs = contact["breakthrough_probability"]
-    deviation = pairs.std("realisation", ddof=1) if study.realisations > 1 else pairs[0] * math.nan
+    deviation = pairs.std("realisation", ddof=1) if len(pairs) > 1 else pairs[0] * math.nan
     means = contact[[f"breakthrough_probability{end}" for end in MEAN_LIMITS]]
     of_pair = {f"pair{end}": contact[f"breakthrough_probability_pair{end}"] for end in LIMITS[1:]}
     return means.assign(of_pair | {"pair_deviation": deviation})
 
 
-def _of_surfaces(study, results):
+def _of_surfaces(results):
     """Probabilities of surfaces, named as the means over realisations of lines are."""
     tail = results["tail"].sel(contact_model="surface")
     limits = (tail[f"breakthrough_probability{end}"] for end in LIMITS)
@@ -205,29 +202,22 @@ def _assumed(contact, model, study, sensitivity):
     return contact.assign({f"assumed{end}": limit.where(known) for end, limit in band.items()})
 
 
-def _deformed(model, film, results, first):
+def _deformed(film, tail, models):
     """Count the points where the oil changes the roughness by too large a part of the film."""
-    surfaces = results["tail"] if model == "surface" else None
-    return int(model_limits.deformed(film.sel(first), surfaces).sum())
+    surfaces = {"line": None, "surface": tail}
+    return {model: int(model_limits.deformed(film, surfaces[model]).sum()) for model in models}
 
 
-def _separated(film, contacts, first):
-    """Count the points at which lines touch, although the oil may keep them apart."""
-    if "line" not in contacts:
-        return 0
-    touched = contacts["line"].sel(first)["breakthrough_probability_mean"] > 0.0
-    return int((model_limits.separated(film.sel(first)) & touched).sum())
-
-
-def _held(film, contact, first):
+def _held(film, contact):
     """Load on the asperities, and the numbers of points where the model does not hold."""
-    film, found = film.sel(first), {"share": math.nan, "overloaded": 0, "merged": 0}
+    found = {"share": math.nan, "overloaded": 0, "merged": 0, "separated": 0}
     if contact is not None:
-        contact = contact.sel(first)
+        touched = contact["breakthrough_probability_mean"] > 0.0
         found = {
             "share": contact["contact_load_share"].mean("realisation").max().item(),
             "overloaded": int(model_limits.overloaded(contact).sum()),
             "merged": int(model_limits.merged(contact, film).sum()),
+            "separated": int((model_limits.separated(film) & touched).sum()),
         }
     return found | {"rubbing": int(model_limits.rubbing(film).sum())}
 
@@ -268,22 +258,14 @@ def _traces(study, film, contacts, comparison):
     """Values at each operating point with a trace, by each contact model."""
     # A simulated rig may run with lines.
     compared = study.contact_model if study.compares_surfaces else ("line",)
-    return [
-        _trace(point, film, model, each, comparison if model in compared else None)
-        for point in study.trace_points
-        for model, each in contacts.items()
-    ]
-
-
-def _trace(point, film, model, contact, comparison):
-    """Values at one operating point, by one contact model."""
-    shares = _measured_near(comparison, point) if comparison else np.array([])
-    return {
-        "model": model,
-        **_values(_at(film, point)),
-        **_values(contact.sel(point)),
-        "shares": shares,
-    }
+    traces = []
+    for point in study.trace_points:
+        near = _measured_near(comparison, point) if comparison else np.array([])
+        for model, contact in contacts.items():
+            values = _values(_at(film, point)) | _values(contact.sel(point))
+            shares = near if model in compared else near[:0]
+            traces.append({"model": model, **values, "shares": shares})
+    return traces
 
 
 def _measured_near(comparison, point):

@@ -260,14 +260,9 @@ def scaled_checks(study: Study, lubricant: xr.Dataset) -> dict[str, float]:
     speed = xr.full_like(force, sorted(grid.speed)[len(grid.speed) // 2])
     oil, formula = lubricant.isel(lubricant=0), study.film_formulas[:1]
     own = film_at(oil.isel(temperature=-1), rollers, force, speed, formula)
+    others, their_force = _other_rollers(rollers), force * LONGER / LARGER
     for _ in range(SEARCHES):
-        film = film_at(
-            oil.isel(temperature=0),
-            _other_rollers(rollers),
-            force * LONGER / LARGER,
-            speed,
-            formula,
-        )
+        film = film_at(oil.isel(temperature=0), others, their_force, speed, formula)
         thicker = own["film_thickness"] / film["film_thickness"]
         speed = speed * thicker.isel(film_formula=0, drop=True) ** 1.25  # films as speed^0.6 to 1
     known = np.isfinite(thicker.values[0])

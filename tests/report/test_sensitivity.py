@@ -91,6 +91,6 @@ def test_the_documentation_has_the_papers_values_and_ranges():
     for factor in factors:
         given, source = factor.given.in_words, escaped(factor.given.source)
         cells = spoken(factor.name), taken[factor.name], given, source
-        assert f"| {' | '.join(cells)} | " in rows, "run docs/tools/assumptions_page.py"
+        assert f"| {' | '.join(cells)} | " in rows, "run docs/tools/result_tables.py"
     assert "| resistivity | 200 nΩ m | -20 % to 100 % | " in rows
     assert rows.count("\n| ") == len(factors) + 4  # head, its rule, the resistivity, and the band

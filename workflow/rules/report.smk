@@ -1,11 +1,19 @@
 from lube.report import ON_ASSUMPTIONS, SUMMARISED
 from lube.pipeline.command_line import PAPER, same_study
 
-# Chapter of the report that holds these pages.
-ABOUT_THE_STUDY = "About the study"
+# Pages of the report on the study as a whole.
 PAGES = {
-    "configuration": "every value, as written and as understood",
-    "assumptions": "what the paper leaves open, and what is used instead",
+    page: report(
+        result(f"report/{page}.html"),
+        category="About the study",
+        caption="../report/page.rst",
+        labels={"Page": page.replace("_", " ").capitalize(), "Shows": shown},
+    )
+    for page, shown in {
+        "configuration": "every value, as written and as understood",
+        "assumptions": "what the paper leaves open, and what is used instead",
+        "run_times": "time and memory of every job",
+    }.items()
 }
 # Parts of the report's start page.
 PARTS = ("facts", "findings", "limits", "files", "pipeline")
@@ -23,15 +31,7 @@ rule pages:
         sources=script_sources("pages"),
     output:
         **{part: result(f"report/{part}.html") for part in PARTS},
-        **{
-            page: report(
-                result(f"report/{page}.html"),
-                category=ABOUT_THE_STUDY,
-                caption="../report/page.rst",
-                labels={"Page": page.capitalize(), "Shows": shown},
-            )
-            for page, shown in PAGES.items()
-        },
+        **{page: PAGES[page] for page in ("configuration", "assumptions")},
     log:
         result("logs/pages.log"),
     benchmark:
@@ -53,12 +53,7 @@ rule times:
         result("explorer.html"),
         sources=script_sources("times"),
     output:
-        report(
-            result("report/run_times.html"),
-            category=ABOUT_THE_STUDY,
-            caption="../report/page.rst",
-            labels={"Page": "Run times", "Shows": "time and memory of every job"},
-        ),
+        PAGES["run_times"],
     log:
         result("logs/times.log"),
     benchmark:

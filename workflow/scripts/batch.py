@@ -11,8 +11,7 @@ from lube.storage.netcdf import load, save
 study = study_of_job(snakemake)
 film = load(snakemake.input.film, "film", study)
 lines = roughness_batch(study.line_spec, study.seed, study.batch(int(snakemake.wildcards.first)))
-for stage in (contact, master):
-    name = stage.__name__.rpartition(".")[2]
-    if study.has(name):
-        made = stage.make_batch(study, film, lines)
-        save(made, snakemake.output[name], f"{name}_batch", study, [snakemake.input.film])
+stages = {"contact": contact, "master": master}
+for name, path in snakemake.output.items():
+    made = stages[name].make_batch(study, film, lines)
+    save(made, path, f"{name}_batch", study, [snakemake.input.film])
