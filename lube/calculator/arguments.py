@@ -40,7 +40,7 @@ def checked(function: _Function) -> _Function:
 
     @functools.wraps(function)
     def call(*args, **kwargs):
-        for name in kwargs.keys() - parameters.keys():
+        for name in (name for name in kwargs if name not in parameters):
             raise StudyError(f"{owner}: {name}: unknown argument, {_meant(name, parameters)}")
         try:
             given = signature.bind(*args, **kwargs).arguments
