@@ -118,7 +118,7 @@ def _films(rows, groups, contact):
     film, starved = films(groups), {}
     if groups.meniscus is not None:
         starved["starvation_factor"] = film / films(replace(groups, meniscus=None))
-    flag = xr.apply_ufunc(regime, *moes_numbers, join="exact")
+    flag = xr.apply_ufunc(regime, *moes_numbers)
     valid = [row.holds(*moes_numbers) for row in rows]
     return contact.assign(
         moes_load=moes_numbers[0],
@@ -155,18 +155,10 @@ def _with_responses(table, solved, slip, specs, threads):
 
 
 def _heating_factor(model, lubricant, contact, groups, slip):
-    speed, conductivity = contact["entrainment_speed"], lubricant["thermal_conductivity"]
-    loading = thermal_loading(
-        lubricant["dynamic_viscosity"],
-        lubricant["temperature_viscosity_coefficient"],
-        speed,
-        conductivity,
-    )
+    loading = inlet_loading(lubricant, contact["entrainment_speed"])
     pressure = contact["hertz_pressure"] / (2.0 * contact["reduced_modulus"])
-    film = xr.apply_ufunc(asymptotic_gap, *groups.moes_numbers, join="exact")
-    factor = xr.apply_ufunc(
-        partial(heating_factor, model), loading, slip, pressure, film, join="exact"
-    )
+    film = xr.apply_ufunc(asymptotic_gap, *groups.moes_numbers)
+    factor = xr.apply_ufunc(partial(heating_factor, model), loading, slip, pressure, film)
     unknown = int(factor.isnull().sum())
     if unknown and model != "none":
         log.warning(
@@ -176,6 +168,13 @@ def _heating_factor(model, lubricant, contact, groups, slip):
             factor.size,
         )
     return factor
+
+
+def inlet_loading(lubricant: xr.Dataset, speed: xr.DataArray) -> xr.DataArray:
+    """Thermal loading of the inlet by oils, at entrainment speeds, m/s."""
+    viscosity, conductivity = lubricant["dynamic_viscosity"], lubricant["thermal_conductivity"]
+    slope = lubricant["temperature_viscosity_coefficient"]
+    return thermal_loading(viscosity, slope, speed, conductivity)
 
 
 @dataclass(frozen=True)
@@ -207,20 +206,17 @@ class FilmGroups:
         cls, lubricant: xr.Dataset, rollers, force, contact: xr.Dataset, inlet_meniscus=None
     ) -> "FilmGroups":
         """Form the groups for a contact from `hertz_contact`; other arguments as in `film_at`."""
-        film_modulus = 2.0 * rollers.reduced_modulus
-        viscosity = lubricant["dynamic_viscosity"]
-        alpha = lubricant["pressure_viscosity_coefficient"]
+        modulus, radius = 2.0 * rollers.reduced_modulus, rollers.reduced_radius
+        viscosity, speed = lubricant["dynamic_viscosity"], contact["entrainment_speed"]
         return cls(
-            dimensionless.dimensionless_load(
-                force / rollers.length, film_modulus, rollers.reduced_radius
+            dimensionless.dimensionless_load(force / rollers.length, modulus, radius),
+            dimensionless.dimensionless_speed(viscosity, speed, modulus, radius),
+            dimensionless.dimensionless_material(
+                lubricant["pressure_viscosity_coefficient"], modulus
             ),
-            dimensionless.dimensionless_speed(
-                viscosity, contact["entrainment_speed"], film_modulus, rollers.reduced_radius
-            ),
-            dimensionless.dimensionless_material(alpha, film_modulus),
             viscosity,
-            film_modulus,
-            None if inlet_meniscus is None else inlet_meniscus / rollers.reduced_radius,
+            modulus,
+            None if inlet_meniscus is None else inlet_meniscus / radius,
         )
 
     @classmethod
@@ -235,14 +231,8 @@ class FilmGroups:
         speed = 0.5 * (load / film["moes_load"]) ** 2
         material = film["moes_material"] / (2.0 * speed) ** 0.25
         meniscus = (film["inlet_meniscus"] / radius).item() if "inlet_meniscus" in film else None
-        return cls(
-            load,
-            speed,
-            material,
-            film["dynamic_viscosity"],
-            2.0 * film["reduced_modulus"],
-            meniscus,
-        )
+        viscosity, modulus = film["dynamic_viscosity"], 2.0 * film["reduced_modulus"]
+        return cls(load, speed, material, viscosity, modulus, meniscus)
 
     @property
     def moes_numbers(self) -> tuple[xr.DataArray, xr.DataArray]:
@@ -260,7 +250,6 @@ class FilmGroups:
             self.viscosity,
             self.film_modulus,
             self.meniscus,
-            join="exact",
         )
 
     @cached_property
@@ -280,13 +269,12 @@ class FilmGroups:
         """
         if row.depends_on_oil:
             return xr.apply_ufunc(six_digits, self.central_film)
-        film = xr.apply_ufunc(row.evaluate, self.load, self.speed, self.material, join="exact")
+        film = xr.apply_ufunc(row.evaluate, self.load, self.speed, self.material)
         if self.meniscus is None:
             return film
         half_width = np.sqrt(8.0 * self.load / np.pi)
-        return film * xr.apply_ufunc(
-            starvation_factor, film / half_width**2, self.meniscus / half_width, join="exact"
-        )
+        before = self.meniscus / half_width
+        return film * xr.apply_ufunc(starvation_factor, film / half_width**2, before)
 
     def thinned(self, factor: xr.DataArray) -> "FilmGroups":
         """Find the groups of films that heating thins by a factor.
