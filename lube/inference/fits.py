@@ -105,16 +105,9 @@ def fit_layer_strength(curves: RecordCurves, study: Study, comparison: Data) -> 
         film_formula). Beyond the strengths of the curves it is NaN, a limit 0 or infinity.
         ``fitted_layer_strength_coverage`` as in `fit_alpha`.
     """
-    tried, logits = strength_logits(curves, study.boundary_layer.strength, comparison)
-    return _fits(
-        "fitted_layer_strength",
-        tried,
-        study.boundary_layer.strength,
-        logits,
-        study,
-        comparison,
-        curves.contact_model,
-    )
+    strength, model = study.boundary_layer.strength, curves.contact_model
+    tried, logits = strength_logits(curves, strength, comparison)
+    return _fits("fitted_layer_strength", tried, strength, logits, study, comparison, model)
 
 
 def strength_logits(

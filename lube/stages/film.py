@@ -17,15 +17,8 @@ from lube.types import Datasets
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film.nc``; see `lube.stages`."""
     oil, rollers, grid = inputs["lubricant"], study.rough_rollers, study.operating_grid
-    return film_table(
-        oil,
-        rollers,
-        grid.force,
-        grid.speed,
-        study.film_formulas,
-        slide_to_roll_ratio=study.slips,
-        **study.film_model,
-    )
+    choices = study.film_model | {"slide_to_roll_ratio": study.slips}
+    return film_table(oil, rollers, grid.force, grid.speed, study.film_formulas, **choices)
 
 
 def film_table(

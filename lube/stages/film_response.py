@@ -14,16 +14,11 @@ from lube.types import Datasets
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film_response.nc``; see `lube.stages`."""
+    oil, film, rollers = inputs["lubricant"], inputs["film"], study.rough_rollers
     if study.answered_lines is not None:
-        return _as_file(inputs["film"])  # it has the responses already
-    return film_responses(
-        inputs["lubricant"],
-        inputs["film"],
-        study.rough_rollers,
-        study.line_spec,
-        threads=threads,
-        **study.inlet_model,
-    )
+        return _as_file(film)  # it has the responses already
+    choices = study.inlet_model | {"threads": threads}
+    return film_responses(oil, film, rollers, study.line_spec, **choices)
 
 
 def film_responses(

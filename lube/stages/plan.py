@@ -61,13 +61,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 def _by_coefficient(study, lubricant, film, slip):
     """Slope of the film's logarithm over that of the pressure-viscosity coefficient, (P,)."""
     options = study.inlet_model | {"slide_to_roll_ratio": slip}
+    rollers, formula = study.rough_rollers, study.film_formulas[0]
     found = planning.film_by_coefficient(
-        lubricant,
-        study.rough_rollers,
-        film["force"],
-        film["speed"],
-        study.film_formulas[0],
-        **options,
+        lubricant, rollers, film["force"], film["speed"], formula, **options
     )
     return found.transpose(*POINT_DIMS).values.ravel()
 
