@@ -217,9 +217,8 @@ class Predictor:
         """Replace Moes' film by the computed one, where it is chosen."""
         if self.film is None:
             return film
-        is_computed = np.flatnonzero(
-            is_chosen(self.deviating, COMPUTED, numbers, film.sizes["run"])
-        )
+        chosen = is_chosen(self.deviating, COMPUTED, numbers, film.sizes["run"])
+        is_computed = np.flatnonzero(chosen)
         some = film.isel(run=is_computed)
         variables = np.log([some[name].values.ravel() for name in FILM_GROUPS])
         ratio = np.exp(self.film(variables)[:, 0])
