@@ -4,6 +4,7 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -104,6 +105,13 @@ def film_at(
             slip, specs = xr.DataArray(slide_to_roll_ratio), (answered_lines, answered_surfaces)
             table = _with_responses(table, solved, slip, specs, threads)
     return table
+
+
+def answered_films(film: xr.Dataset, lubricant: xr.Dataset, rollers, **model: Any) -> xr.Dataset:
+    """Compute films at the levels of a film table, with responses; arguments as in `film_at`."""
+    force, speed, slip = (film[name] for name in ("force", "speed", "slide_to_roll_ratio"))
+    choices = model | {"slide_to_roll_ratio": slip}
+    return film_at(lubricant, rollers, force, speed, ["computed"], **choices)
 
 
 def _films(rows, groups, contact):

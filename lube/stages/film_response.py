@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from lube.grid.film_responses import VARIABLES
-from lube.grid.films import film_at
+from lube.grid.films import answered_films
 from lube.schema import FILES, label
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import RollerPair
@@ -49,19 +49,9 @@ def film_responses(
         The ``film_response`` file of `lube.schema`, by `lube.grid.film_responses.wave_responses`.
         Where the film did not converge, the response is NaN and the log says so.
     """
-    solved = film_at(
-        lubricant,
-        rollers,
-        film["force"],
-        film["speed"],
-        ["computed"],
-        slide_to_roll_ratio=film["slide_to_roll_ratio"],
-        inlet_shear_heating=inlet_shear_heating,
-        inlet_meniscus=inlet_meniscus,
-        answered_lines=spec,
-        threads=threads,
-    )
-    return _as_file(solved)
+    inlet = {"inlet_shear_heating": inlet_shear_heating, "inlet_meniscus": inlet_meniscus}
+    choices = inlet | {"answered_lines": spec, "threads": threads}
+    return _as_file(answered_films(film, lubricant, rollers, **choices))
 
 
 def _as_file(film):
