@@ -102,19 +102,9 @@ def film_table(
     levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
     forces, speeds, slips = (axes[name] for name in levels)
-    table = film_at(
-        lubricant,
-        rollers,
-        forces,
-        speeds,
-        formulas,
-        with_shape,
-        slips,
-        inlet_shear_heating,
-        inlet_meniscus,
-        answered_lines,
-        rough_surfaces=rough_surfaces,
-        load_sharing=load_sharing,
-    )
+    inlet = {"inlet_shear_heating": inlet_shear_heating, "inlet_meniscus": inlet_meniscus}
+    surfaces = {"rough_surfaces": rough_surfaces, "load_sharing": load_sharing}
+    choices = inlet | surfaces | {"answered_lines": answered_lines}
+    table = film_at(lubricant, rollers, forces, speeds, formulas, with_shape, slips, **choices)
     dims = CONTACT_DIMS[0], "roller", *CONTACT_DIMS[1:]
     return label(table.transpose(*dims, ..., missing_dims="ignore"), "film")
