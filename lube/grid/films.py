@@ -216,12 +216,11 @@ class FilmGroups:
         """Form the groups for a contact from `hertz_contact`; other arguments as in `film_at`."""
         modulus, radius = 2.0 * rollers.reduced_modulus, rollers.reduced_radius
         viscosity, speed = lubricant["dynamic_viscosity"], contact["entrainment_speed"]
+        alpha = lubricant["pressure_viscosity_coefficient"]
         return cls(
             dimensionless.dimensionless_load(force / rollers.length, modulus, radius),
             dimensionless.dimensionless_speed(viscosity, speed, modulus, radius),
-            dimensionless.dimensionless_material(
-                lubricant["pressure_viscosity_coefficient"], modulus
-            ),
+            dimensionless.dimensionless_material(alpha, modulus),
             viscosity,
             modulus,
             None if inlet_meniscus is None else inlet_meniscus / radius,
