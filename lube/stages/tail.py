@@ -7,7 +7,7 @@ import xarray as xr
 from lube.contact.ensemble import PROBABILITIES
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import mean_breaking_curvature
-from lube.contact.windows import FLATTENED, ContactWindows, study_windows
+from lube.contact.windows import FLATTENED, ContactWindows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import Gap
@@ -91,13 +91,11 @@ def _on_lines(study, film, threads):
     pair, levels = RoughPair.of(study), np.asarray(study.slips, float)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
-    windows, tables = study_windows(study, film), []
-    of_one = windows.size // film.sizes["film_formula"]
-    first, others = (slice(1), slice(of_one)), (slice(1, None), slice(of_one, None))
-    for (formulas, points), pairs in (first, PAIRS), (others, FEWER_PAIRS):
+    tables = []
+    for formulas, pairs in (slice(1), PAIRS), (slice(1, None), FEWER_PAIRS):
         some = film.isel(film_formula=formulas)
         if some["film_formula"].size:
-            found = _sampled(pair, some, windows[points], levels, pairs, threads)
+            found = _sampled(pair, some, levels, pairs, threads)
             tables.append(_table(pair, some, *found, levels))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
@@ -205,8 +203,7 @@ def pair_probabilities(
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
         names = *PROBABILITIES, "breakthrough_rate"
         return xr.Dataset(dict.fromkeys(names, unknown), attrs={"remarks": remark})
-    windows = ContactWindows(pair.spec, film, pair.layer, pair.gap)
-    table, runs = _sampled(pair, film, windows, slide_to_roll_ratio, PAIRS)
+    table, runs = _sampled(pair, film, slide_to_roll_ratio, PAIRS)
     table["breakthrough_rate"] = _in_time(pair, film, runs, slide_to_roll_ratio)[1]
     return table.assign_attrs(remarks="").transpose("pair", *film["film_thickness"].dims)
 
@@ -345,10 +342,11 @@ def _window_points(spec, film):
     return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
 
 
-def _sampled(pair, film, windows, slips, pairs, threads=None):
+def _sampled(pair, film, slips, pairs, threads=None):
     """Probabilities over pair and the film's dimensions, and numbers of runs, over outcome too."""
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     dims = ("pair", "outcome", *thickness.dims)
+    windows = ContactWindows(pair.spec, film, pair.layer, pair.gap)
     if _SLIP in film["film_thickness"].dims:
         slips = film[_SLIP]
     if isinstance(slips, xr.DataArray):  # one at each point
@@ -358,11 +356,11 @@ def _sampled(pair, film, windows, slips, pairs, threads=None):
         return windows.sample(pair.spec, pair.seed, number, np.atleast_2d(slips))
 
     found = on_threads(on_one_pair, range(pairs), threads, "rare contact of lines")
-    windows, runs = (
+    in_window, runs = (
         xr.DataArray(np.reshape(each, (pairs, -1, *thickness.shape)), thickness.coords, dims)
         for each in zip(*found, strict=True)
     )
-    contact, breakthrough = windows.transpose("outcome", ...)
+    contact, breakthrough = in_window.transpose("outcome", ...)
     return xr.Dataset(dict(zip(PROBABILITIES, (breakthrough, contact), strict=True))), runs
 
 
