@@ -147,13 +147,8 @@ def layer_factor_of(grid: LineGrid, reduced_modulus: float, boundary_layer) -> f
     float
         The factor, per height step of overlap.
     """
-    return layer_factor(
-        reduced_modulus,
-        boundary_layer.critical_thickness,
-        boundary_layer.shear_strength,
-        grid.spacing,
-        grid.height_step,
-    )
+    thickness, strength = boundary_layer.critical_thickness, boundary_layer.shear_strength
+    return layer_factor(reduced_modulus, thickness, strength, grid.spacing, grid.height_step)
 
 
 def whole_numbers(film_thickness: Values, half_width: Values, grid: LineGrid) -> Pair:

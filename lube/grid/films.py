@@ -4,6 +4,7 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -106,6 +107,13 @@ def film_at(
     return table
 
 
+def answered_films(film: xr.Dataset, lubricant: xr.Dataset, rollers, **model: Any) -> xr.Dataset:
+    """Compute films at the levels of a film table, with responses; arguments as in `film_at`."""
+    force, speed, slip = (film[name] for name in ("force", "speed", "slide_to_roll_ratio"))
+    choices = model | {"slide_to_roll_ratio": slip}
+    return film_at(lubricant, rollers, force, speed, ["computed"], **choices)
+
+
 def _films(rows, groups, contact):
     """Contact, Moes' numbers, and the films by some formulas."""
     moes_numbers = groups.moes_numbers
@@ -118,7 +126,7 @@ def _films(rows, groups, contact):
     film, starved = films(groups), {}
     if groups.meniscus is not None:
         starved["starvation_factor"] = film / films(replace(groups, meniscus=None))
-    flag = xr.apply_ufunc(regime, *moes_numbers, join="exact")
+    flag = xr.apply_ufunc(regime, *moes_numbers)
     valid = xr.concat([row.holds(*moes_numbers) for row in rows], dim=names, join="exact")
     return contact.assign(
         moes_load=moes_numbers[0],
@@ -155,18 +163,10 @@ def _with_responses(table, solved, slip, specs, threads):
 
 
 def _heating_factor(model, lubricant, contact, groups, slip):
-    speed, conductivity = contact["entrainment_speed"], lubricant["thermal_conductivity"]
-    loading = thermal_loading(
-        lubricant["dynamic_viscosity"],
-        lubricant["temperature_viscosity_coefficient"],
-        speed,
-        conductivity,
-    )
+    loading = inlet_loading(lubricant, contact["entrainment_speed"])
     pressure = contact["hertz_pressure"] / (2.0 * contact["reduced_modulus"])
-    film = xr.apply_ufunc(asymptotic_gap, *groups.moes_numbers, join="exact")
-    factor = xr.apply_ufunc(
-        partial(heating_factor, model), loading, slip, pressure, film, join="exact"
-    )
+    film = xr.apply_ufunc(asymptotic_gap, *groups.moes_numbers)
+    factor = xr.apply_ufunc(partial(heating_factor, model), loading, slip, pressure, film)
     unknown = int(factor.isnull().sum())
     if unknown and model != "none":
         log.warning(
@@ -176,6 +176,13 @@ def _heating_factor(model, lubricant, contact, groups, slip):
             factor.size,
         )
     return factor
+
+
+def inlet_loading(lubricant: xr.Dataset, speed: xr.DataArray) -> xr.DataArray:
+    """Thermal loading of the inlet by oils, at entrainment speeds, m/s."""
+    viscosity, conductivity = lubricant["dynamic_viscosity"], lubricant["thermal_conductivity"]
+    slope = lubricant["temperature_viscosity_coefficient"]
+    return thermal_loading(viscosity, slope, speed, conductivity)
 
 
 @dataclass(frozen=True)
@@ -207,20 +214,16 @@ class FilmGroups:
         cls, lubricant: xr.Dataset, rollers, force, contact: xr.Dataset, inlet_meniscus=None
     ) -> "FilmGroups":
         """Form the groups for a contact from `hertz_contact`; other arguments as in `film_at`."""
-        film_modulus = 2.0 * rollers.reduced_modulus
-        viscosity = lubricant["dynamic_viscosity"]
+        modulus, radius = 2.0 * rollers.reduced_modulus, rollers.reduced_radius
+        viscosity, speed = lubricant["dynamic_viscosity"], contact["entrainment_speed"]
         alpha = lubricant["pressure_viscosity_coefficient"]
         return cls(
-            dimensionless.dimensionless_load(
-                force / rollers.length, film_modulus, rollers.reduced_radius
-            ),
-            dimensionless.dimensionless_speed(
-                viscosity, contact["entrainment_speed"], film_modulus, rollers.reduced_radius
-            ),
-            dimensionless.dimensionless_material(alpha, film_modulus),
+            dimensionless.dimensionless_load(force / rollers.length, modulus, radius),
+            dimensionless.dimensionless_speed(viscosity, speed, modulus, radius),
+            dimensionless.dimensionless_material(alpha, modulus),
             viscosity,
-            film_modulus,
-            None if inlet_meniscus is None else inlet_meniscus / rollers.reduced_radius,
+            modulus,
+            None if inlet_meniscus is None else inlet_meniscus / radius,
         )
 
     @classmethod
@@ -235,14 +238,8 @@ class FilmGroups:
         speed = 0.5 * (load / film["moes_load"]) ** 2
         material = film["moes_material"] / (2.0 * speed) ** 0.25
         meniscus = (film["inlet_meniscus"] / radius).item() if "inlet_meniscus" in film else None
-        return cls(
-            load,
-            speed,
-            material,
-            film["dynamic_viscosity"],
-            2.0 * film["reduced_modulus"],
-            meniscus,
-        )
+        viscosity, modulus = film["dynamic_viscosity"], 2.0 * film["reduced_modulus"]
+        return cls(load, speed, material, viscosity, modulus, meniscus)
 
     @property
     def moes_numbers(self) -> tuple[xr.DataArray, xr.DataArray]:
@@ -260,7 +257,6 @@ class FilmGroups:
             self.viscosity,
             self.film_modulus,
             self.meniscus,
-            join="exact",
         )
 
     @cached_property
@@ -280,13 +276,12 @@ class FilmGroups:
         """
         if row.depends_on_oil:
             return xr.apply_ufunc(six_digits, self.central_film)
-        film = xr.apply_ufunc(row.evaluate, self.load, self.speed, self.material, join="exact")
+        film = xr.apply_ufunc(row.evaluate, self.load, self.speed, self.material)
         if self.meniscus is None:
             return film
         half_width = np.sqrt(8.0 * self.load / np.pi)
-        return film * xr.apply_ufunc(
-            starvation_factor, film / half_width**2, self.meniscus / half_width, join="exact"
-        )
+        before = self.meniscus / half_width
+        return film * xr.apply_ufunc(starvation_factor, film / half_width**2, before)
 
     def thinned(self, factor: xr.DataArray) -> "FilmGroups":
         """Find the groups of films that heating thins by a factor.

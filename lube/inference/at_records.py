@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from lube.contact.ensemble import ATTRIBUTES
 from lube.contact.rough_pair import drawn
 from lube.contact.windows import study_windows
 from lube.grid.films import film_at
@@ -43,10 +44,10 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     Returns
     -------
     xarray.Dataset
-        The variables of `study_films_at_records`; ``breakthrough_probability`` over (realisation,
-        film_formula, record); the results of `lube.inference.record_scatter.record_scatter` over
-        the same dimensions, most without realisation; and the attributes ``travel`` and
-        ``longest_wavelength``, both m, of one realisation.
+        The variables and attributes of `study_films_at_records`; ``breakthrough_probability`` over
+        (realisation, film_formula, record); and the results of
+        `lube.inference.record_scatter.record_scatter` over the same dimensions, most without
+        realisation.
 
         The probabilities are those of one revolution of pure rolling, with the film and its
         response to the roughness at the record's slip. Apart from these, slip does not change the
@@ -60,9 +61,7 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     values = {"breakthrough_probability": probability, **scatter}
     values = {name: each.reshape(*each.shape[:-1], *shape) for name, each in values.items()}
     values["realisation"] = contact["realisation"].values
-    model = at_records.assign(with_dims("comparison", values))
-    attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
-    return model.assign_attrs(attributes)
+    return at_records.assign(with_dims("comparison", values))
 
 
 def study_films_at_records(study: Study, experiment: xr.Dataset) -> xr.Dataset:
@@ -78,7 +77,8 @@ def study_films_at_records(study: Study, experiment: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Of `film_at_records`, what the ``comparison`` file has.
+        Of `film_at_records`, what the ``comparison`` file has; with the attributes ``travel`` and
+        ``longest_wavelength``, both m, of one realisation.
     """
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     table = film_at_records(
@@ -86,7 +86,8 @@ def study_films_at_records(study: Study, experiment: xr.Dataset) -> xr.Dataset:
     )
     unused = [name for name in table if name not in FILES["comparison"]]
     unused += [] if study.gap.has_shape else ["formula_place"]
-    return table.drop_vars(unused)
+    attributes = {name: getattr(study.line_spec, name) for name in ATTRIBUTES}
+    return table.drop_vars(unused).assign_attrs(attributes)
 
 
 def film_at_records(

@@ -105,16 +105,9 @@ def fit_layer_strength(curves: RecordCurves, study: Study, comparison: Data) -> 
         film_formula). Beyond the strengths of the curves it is NaN, a limit 0 or infinity.
         ``fitted_layer_strength_coverage`` as in `fit_alpha`.
     """
-    tried, logits = strength_logits(curves, study.boundary_layer.strength, comparison)
-    return _fits(
-        "fitted_layer_strength",
-        tried,
-        study.boundary_layer.strength,
-        logits,
-        study,
-        comparison,
-        curves.contact_model,
-    )
+    strength, model = study.boundary_layer.strength, curves.contact_model
+    tried, logits = strength_logits(curves, strength, comparison)
+    return _fits("fitted_layer_strength", tried, strength, logits, study, comparison, model)
 
 
 def strength_logits(
@@ -236,13 +229,12 @@ def fit_records(
         From `lube.statistics.curves.fit_factor`.
     """
     logits, comparison = _usable(logits, comparison)
-    logits, *known = _of_model(logits, comparison, contact_model)
-    shares, noise = comparison["measured_share"].values, comparison["share_error"].values
-    return fit_factor(log_factors, logits, shares, *known, noise)
+    fit = _fit(log_factors, logits, comparison, contact_model)
+    return fit(comparison["measured_share"].values)
 
 
-def _of_model(logits, comparison, contact_model):
-    """Logits, and weights and covariance of the records and what these rest on."""
+def _fit(log_factors, logits, comparison, contact_model):
+    """Return the fit of a factor, as a function of the shares of the records."""
     logits, covariance = logits + _pooled_shift(comparison), _pair_scatter(comparison)
     if contact_model == "surface":
         size, count = comparison["sample_size"].values, SURFACES
@@ -261,7 +253,8 @@ def _of_model(logits, comparison, contact_model):
         size = windows_at_records(comparison)
         scale = np.sqrt(size / trials)
         covariance *= scale[:, None] * scale
-    return logits, size, covariance, count
+    noise = comparison["share_error"].values
+    return lambda shares: fit_factor(log_factors, logits, shares, size, covariance, count, noise)
 
 
 def _usable(logits, comparison):
@@ -316,7 +309,6 @@ def _coverage_of_surfaces(log_factors, truth, logits, comparison):
     drawn = comparison["drawn_share"].values
     if not drawn.any():
         return np.nan
-    logits, *known = _of_model(logits, comparison, "surface")
-    known = *known, comparison["share_error"].values
-    limits = [fit_factor(log_factors, logits, shares, *known)[1:] for shares in drawn]
+    fit = _fit(log_factors, logits, comparison, "surface")
+    limits = [fit(shares)[1:] for shares in drawn]
     return np.mean([lower <= np.exp(truth) <= upper for lower, upper in limits])

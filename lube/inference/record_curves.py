@@ -318,11 +318,11 @@ def gauged_ratios(curves: Sequence[Curve], comparison: xr.Dataset, noise: Array)
         Value, lower and upper limit. If a share lies beyond its curve, the value is NaN, and a
         limit is 0 or infinity.
     """
-    columns = comparison["measured_share"].values, comparison["scatter_ratio"].values[0], noise
+    shares, scatter = comparison["measured_share"].values, comparison["scatter_ratio"].values[0]
     realisations = comparison.sizes.get("realisation", SURFACES)
     films = [
         film_interval(curve, share, ratio, realisations, error)
-        for curve, share, ratio, error in zip(curves, *columns, strict=True)
+        for curve, share, ratio, error in zip(curves, shares, scatter, noise, strict=True)
     ]
     ratios = np.exp(films).T
     ratios[0] = np.where(np.isfinite(films)[:, 0], ratios[0], np.nan)

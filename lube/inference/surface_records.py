@@ -187,12 +187,9 @@ def _numbers(study, contact):
 def _curve_ratios(study, first):
     """Lambda ratios of the curves, from theory for high, flat films."""
     moments, ratios = surface_moments(study.line_spec), np.geomspace(1.0, 20.0, 400)
-    contacts = expected_contacts(
-        ratios * first["composite_rms_roughness"].item(),
-        moments,
-        study.rollers.length,
-        2.0 * first["contact_half_width"].mean().item(),
-    )
+    films = ratios * first["composite_rms_roughness"].item()
+    width = 2.0 * first["contact_half_width"].mean().item()
+    contacts = expected_contacts(films, moments, study.rollers.length, width)
     ends = np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
     return np.geomspace(*ends, CURVE_FILMS)
 
@@ -201,12 +198,8 @@ def _layer_strengths(pair, films, level):
     """Strengths of boundary layers, Pa/m, rising: the pair's, and those that some summits break."""
     factors = np.geomspace(1e-3, 1e3, 400)
     sharp = mean_breaking_curvature(pair, films) * factors
-    shares = sharp_surface_summit_share(
-        np.full(sharp.size, level.item()),
-        surface_moments(pair.spec),
-        sharp,
-        curvature_moments(pair.spec),
-    )
+    levels, moments = np.full(sharp.size, level.item()), surface_moments(pair.spec)
+    shares = sharp_surface_summit_share(levels, moments, sharp, curvature_moments(pair.spec))
     others = np.exp(np.interp(np.negative(LAYER_SHARES), -shares, np.log(factors)))
     return pair.layer.strength * np.sort([1.0, *others])
 

@@ -203,31 +203,33 @@ def surface_scatter(
     # Ridges across rolling are no longer along it.
     reach, recurring = longest_waves(spec)[1] / spec.spacing, RecurringContacts(spec)
     strips, sharp = strip_films(pair, films), mean_breaking_curvature(pair, films)
+    perimeters = np.multiply(spec.points, spec.spacing)
     durations = turns.reshape(-1, shares.size).T.tolist()
 
     def of_record(slip, turns, share, strip):
         if strip is None or np.isnan(share):
             return [np.nan] * len(turns)
-        film, common = strip.levels(spec).min(), strip.common(spec, length)
+        film, (lags, common) = strip.levels(spec).min(), strip.common(spec, length)
         breaking = strip.breaking_part(spec, length, sharp)
-        contacts = share, *common, recurring.at(film, breaking)
+        alone = recurring.at(film, breaking)
         broken = breaking, strip.breakthrough_width(spec, length, sharp, slip)
         passages = [strip.passage_width(spec, length, each) for each in (slip, 0.0)]
-        perimeters = np.multiply(spec.points, spec.spacing)
-        known, rolling = (*contacts, passages, slip, perimeters), turn_ratio(*contacts, perimeters)
-        part = persistent_part(*contacts) * spec.points[0] / spec.points
-        part = part / slip_ratio(*known, broken=broken)
+        slipping = partial(
+            slip_ratio, share, lags, common, alone, passages, slip, perimeters, broken=broken
+        )
+        part = persistent_part(share, lags, common, alone) * spec.points[0] / spec.points
+        part = part / slipping()
         if slip == 0.0 and spec.points[0] == spec.points[1]:
             part = np.zeros(2)  # both surfaces recur together
-        alike = drifting_shares(share, *common, partial(recurring.drifted, film))
-        of_turn = (slip_ratio(*known, min(one, 1.0), broken) for one in turns)
-        later = (
-            scatter_ratio(
-                max(one, 1.0), speed_ratios(slip), spec.points, reach, part, drift, alike=alike
+        alike = drifting_shares(share, lags, common, partial(recurring.drifted, film))
+        rolling = turn_ratio(share, lags, common, alone, perimeters)
+        ratios, found = speed_ratios(slip), []
+        for one in turns:
+            later = scatter_ratio(
+                max(one, 1.0), ratios, spec.points, reach, part, drift, alike=alike
             )
-            for one in turns
-        )
-        return [first * more / rolling for first, more in zip(of_turn, later, strict=True)]
+            found.append(slipping(min(one, 1.0)) * later / rolling)
+        return found
 
     found = map(of_record, slips.tolist(), durations, shares, strips)
     return np.reshape(np.transpose(list(found)), turns.shape)

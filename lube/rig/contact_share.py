@@ -6,6 +6,7 @@ scatter gives its interval, and they can be folded by the revolution.
 """
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -65,13 +66,14 @@ class ContactShare:
     def __init__(
         self, limits: npt.ArrayLike, releases: npt.ArrayLike | None = None, hold: int = 0
     ) -> None:
-        self._limits = np.array(limits, float)
-        self._count, self._triggers = count_below, ()
+        limits = np.array(limits, float)
+        self._counts = np.zeros((limits.size, BLOCKS), np.int64)
+        options = {"limits": limits, "counts": self._counts}
+        self._count = partial(count_below, **options)
         if releases is not None or hold > 0:
-            releases_of = self._limits if releases is None else np.array(releases, float)
-            states = np.zeros((self._limits.size, 3), np.int64)
-            self._count, self._triggers = follow_contact, (releases_of, hold, states)
-        self._counts = np.zeros((self._limits.size, BLOCKS), np.int64)
+            options["releases"] = limits if releases is None else np.array(releases, float)
+            options |= {"hold": hold, "states": np.zeros((limits.size, 3), np.int64)}
+            self._count = partial(follow_contact, **options)
         self._doublings = self.samples = 0
 
     def add(self, values: np.ndarray) -> None:
@@ -85,14 +87,7 @@ class ContactShare:
         values = np.ascontiguousarray(values)
         while values.size:
             room = (BLOCKS << self._doublings) - self.samples
-            self._count(
-                values[:room],
-                self.samples,
-                self._doublings,
-                self._limits,
-                *self._triggers,
-                self._counts,
-            )
+            self._count(values[:room], self.samples, self._doublings)
             self.samples += min(room, values.size)
             values = values[room:]
             if self.samples == BLOCKS << self._doublings:

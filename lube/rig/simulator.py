@@ -140,11 +140,12 @@ def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
         The two lines, int32 height steps.
     """
     drift, pairs = study.rig.drift, iter(pairs)
+    kept, renewed = math.sqrt(1.0 - drift), math.sqrt(drift)
     pair = next(pairs)
     for turn in range(study.rig.turns):
-        if turn and drift > 0.0:
+        if turn and drift > 0.0:  # this fraction of the variance of the heights is new
             both = zip(pair, next(pairs), strict=True)
-            pair = tuple(_renewed(old, new, drift) for old, new in both)
+            pair = tuple(np.rint(kept * old + renewed * new).astype(np.int32) for old, new in both)
         yield pair
 
 
@@ -195,12 +196,6 @@ def repeats(study: Study, ratios: Ratios) -> bool:
     """
     first, second = study.line_spec.points
     return first == second and ratios[0] == ratios[1] and study.rig.drift == 0.0
-
-
-def _renewed(line, other, drift):
-    """Replace a fraction of a line's variance by that of another line; int32 height steps."""
-    kept, new = math.sqrt(1.0 - drift), math.sqrt(drift)
-    return np.rint(kept * line + new * other).astype(np.int32)
 
 
 @dataclass(frozen=True)

@@ -183,17 +183,11 @@ class Deviating:
         study, oil = self.study, self._oil(values, points)
         loads = points["force"] * (1.0 + values.get("force", 0.0))
         speeds = points["speed"] * (1.0 + values.get("speed", 0.0))
-        table = film_at(
-            oil,
-            self._rollers(values, points),
-            loads,
-            speeds,
-            [formula if shape else STAND_IN.get(formula, formula)],
-            slide_to_roll_ratio=points.get("slide_to_roll_ratio", rolling(study.slips)),
-            inlet_shear_heating=heating,
-            inlet_meniscus=study.inlet_model["inlet_meniscus"],
-            **shape,
-        )
+        rollers = self._rollers(values, points)
+        formulas = [formula if shape else STAND_IN.get(formula, formula)]
+        choices = study.inlet_model | {"inlet_shear_heating": heating} | shape
+        choices["slide_to_roll_ratio"] = points.get("slide_to_roll_ratio", rolling(study.slips))
+        table = film_at(oil, rollers, loads, speeds, formulas, **choices)
         viscosity = oil["dynamic_viscosity"]
         table = table.isel(film_formula=0, drop=True).assign(dynamic_viscosity=viscosity)
         if heating == "none":
@@ -225,13 +219,8 @@ class Deviating:
         pair, scale = self.study.rollers, 1.0 + values.get("young_modulus", 0.0)
         if "radius" in points:
             pair = pair.with_radii(points["radius"], points["second_radius"])
-        return DeviatingRollers(
-            pair.first,
-            pair.length,
-            pair.reduced_radius,
-            pair.reduced_modulus * scale,
-            self.rms_roughness(values),
-        )
+        modulus, rms = pair.reduced_modulus * scale, self.rms_roughness(values)
+        return DeviatingRollers(pair.first, pair.length, pair.reduced_radius, modulus, rms)
 
     def rms_roughness(self, values: dict):
         """Rms height of both lines together, m."""

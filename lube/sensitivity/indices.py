@@ -18,6 +18,7 @@ from SALib.analyze import sobol as sobol_analysis
 from SALib.sample import morris as morris_sample
 from SALib.sample import sobol as sobol_sample
 
+from lube.schema import values_with_limits
 from lube.types import Array
 
 BASE_SAMPLES = 1024
@@ -58,17 +59,16 @@ def sobol(
     Returns
     -------
     indices : dict of str to numpy.ndarray
-        ``first_order``, ``total_effect`` and the half-widths of their 95 % intervals,
-        ``first_order_error`` and ``total_effect_error``, of shape (factors or groups, points);
-        NaN where the film of a sample is not known, or nothing changes.
+        ``first_order`` and ``total_effect``, with the limits ``_lower`` and ``_upper`` of their
+        95 % intervals, of shape (factors or groups, points); NaN where the film of a sample is not
+        known, or nothing changes.
     values : numpy.ndarray
         Values of independent samples among them, shape (2 `BASE_SAMPLES`, points).
     """
     problem = _problem(names, groups)
     design = partial(sobol_sample.sample, calc_second_order=False, seed=seed)
     values = predict(design(problem, BASE_SAMPLES))
-    keys = {"first_order": "S1", "first_order_error": "S1_conf"}
-    keys |= {"total_effect": "ST", "total_effect_error": "ST_conf"}
+    keys = "S1", "S1_conf", "ST", "ST_conf"
     # SALib takes a seed of 0 for none.
     options = {"calc_second_order": False, "num_resamples": RESAMPLES, "seed": seed + 1}
     sizes = len(dict.fromkeys(groups)) if groups else len(names)
@@ -77,11 +77,17 @@ def sobol(
         if not np.isfinite(column).all() or np.ptp(column) == 0.0:
             return np.full((len(keys), sizes), np.nan)
         found = sobol_analysis.analyze(problem, column, **options)
-        return np.array([found[key] for key in keys.values()])
+        return np.array([found[key] for key in keys])
 
-    found = np.stack([of_point(column) for column in values.T], axis=-1)
+    first, error, total, total_error = np.stack([of_point(one) for one in values.T], axis=-1)
+    found = _with_limits("first_order", first, error)
+    found |= _with_limits("total_effect", total, total_error)
     blocks = values.reshape(BASE_SAMPLES, -1, values.shape[1])
-    return dict(zip(keys, found, strict=True)), np.concatenate([blocks[:, 0], blocks[:, -1]])
+    return found, np.concatenate([blocks[:, 0], blocks[:, -1]])
+
+
+def _with_limits(name, value, error):
+    return values_with_limits(name, (value, value - error, value + error))
 
 
 def morris(
@@ -104,8 +110,8 @@ def morris(
     -------
     dict of str to numpy.ndarray
         Shape (factors, points): ``elementary_effect``, the mean of the absolute changes, each over
-        the part of the distribution that its step leads through, or from one choice to another;
-        ``elementary_effect_error`` and ``elementary_effect_deviation``; and
+        the part of the distribution that its step leads through, or from one choice to another,
+        with ``_lower`` and ``_upper``; ``elementary_effect_deviation``; and
         ``screened_deviation``, :math:`\sqrt{\langle d^2 \rangle (1 - 1/k) / 2}` with k levels: the
         standard deviation that the factor causes while all others stay as they are. NaN where the
         film of a sample is not known.
@@ -127,9 +133,9 @@ def morris(
     effects = changes / steps[..., None]
     size = np.abs(effects)
     part = (0.5 - 0.5 / counts)[:, None]
+    error = 1.96 * size.std(axis=0, ddof=1) / np.sqrt(TRAJECTORIES)
     return {
-        "elementary_effect": size.mean(axis=0),
-        "elementary_effect_error": 1.96 * size.std(axis=0, ddof=1) / np.sqrt(TRAJECTORIES),
+        **_with_limits("elementary_effect", size.mean(axis=0), error),
         "elementary_effect_deviation": effects.std(axis=0, ddof=1),
         "screened_deviation": np.sqrt(part * np.mean(changes**2, axis=0)),
     }

@@ -24,7 +24,8 @@ LEAST_RUNS = 20
 """Runs with breakthroughs that a surrogate needs."""
 BAND = 0.05, 0.95
 """Quantiles of the probability over all that a study does not know exactly."""
-COMPUTED = "computed"
+COMPUTED = {"film_formula": "computed"}
+"""Choice of the computed film."""
 FILM_GROUPS = "moes_load", "moes_material", "dynamic_viscosity"
 """On which the ratio of the computed film to that of Moes' formula depends."""
 
@@ -199,7 +200,7 @@ class Predictor:
         film = self._with_computed(joined(deviating.films(values, points)), numbers)
         found = np.full((len(unit), points.sizes["point"]), np.nan)
         for model, surrogate in self.surrogates.items():
-            some = np.flatnonzero(is_chosen(deviating, model, numbers, len(unit)))
+            some = np.flatnonzero(is_chosen(deviating, model._asdict(), numbers, len(unit)))
             if some.size == 0:
                 continue
             own = {name: each.isel(run=some) for name, each in values.items()}
@@ -216,9 +217,8 @@ class Predictor:
         """Replace Moes' film by the computed one, where it is chosen."""
         if self.film is None:
             return film
-        formulas = self.deviating.formulas
-        number = numbers.get("film_formula", np.zeros(film.sizes["run"], int))
-        is_computed = np.flatnonzero(np.array(formulas)[number] == COMPUTED)
+        chosen = is_chosen(self.deviating, COMPUTED, numbers, film.sizes["run"])
+        is_computed = np.flatnonzero(chosen)
         some = film.isel(run=is_computed)
         variables = np.log([some[name].values.ravel() for name in FILM_GROUPS])
         ratio = np.exp(self.film(variables)[:, 0])
@@ -235,12 +235,11 @@ def _of_model(runs, model):
 
 def _film(deviating, runs):
     """Interpolate the ratio of the computed film, and find its error."""
-    formulas = np.array(deviating.formulas)
-    if COMPUTED not in formulas:
+    if COMPUTED["film_formula"] not in deviating.formulas:
         return None, 0.0
     values = deviations(deviating.factors, runs["factor_quantile"].values)
-    number = values.get("film_formula", np.zeros(runs.sizes["run"], int))
-    computed = runs.isel(run=(formulas[number] == COMPUTED) & runs["film_thickness"].notnull())
+    chosen = is_chosen(deviating, COMPUTED, values, runs.sizes["run"])
+    computed = runs.isel(run=chosen & runs["film_thickness"].notnull())
     values = over_run(deviations(deviating.factors, computed["factor_quantile"].values))
     points = computed.reset_coords()[list(POINT_DIMS)]
     moes = joined(deviating.films(values, points))["film_thickness"]

@@ -28,12 +28,12 @@ NUMBERS = ["moes_load", "moes_material"]
 RATIOS = 1.35, 1.8
 """Largest ratios of neighbouring levels of M, and of L, with which responses change less."""
 LEAST_LEVELS = 3
-KINDS = {
-    "line": ("response", wave_responses, line_heights),
-    "surface": ("surface_response", surface_responses, surface_heights),
-}
-"""By contact model: name of the response in a film dataset, and functions that solve for it, and
-that distribute the mean square heights among the waves."""
+NAMES = {"line": "response", "surface": "surface_response"}
+"""By contact model: name of the response in a film dataset."""
+SOLVERS = {"line": wave_responses, "surface": surface_responses}
+"""Functions that solve for it."""
+HEIGHTS = {"line": line_heights, "surface": surface_heights}
+"""Functions that distribute the mean square heights among the waves."""
 
 
 def solve_responses(
@@ -84,7 +84,7 @@ def solve_responses(
     slips = np.unique(slips_of(deviating, points))
     slips = xr.DataArray(slips, {"slide_to_roll_ratio": slips}, ["slide_to_roll_ratio"])
     tables = [
-        KINDS[name][1](profiles, xr.Dataset(contact), slips, lines, threads)
+        SOLVERS[name](profiles, xr.Dataset(contact), slips, lines, threads)
         for name in contact_models
     ]
     return xr.merge(tables, join="exact").assign(contact_half_width=half_width)
@@ -127,7 +127,7 @@ def with_responses(
     like = table[0, 0, 0].drop_vars([*NUMBERS, "slide_to_roll_ratio"])
     found = like.expand_dims(run=slips.size).copy(data=np.stack(found))
     found = found.squeeze("wave_angle", drop=True) if contact_model == "line" else found
-    name, *_ = KINDS[contact_model]
+    name = NAMES[contact_model]
     return film.assign({f"{name}_real": found.real, f"{name}_imaginary": found.imag})
 
 
@@ -137,7 +137,7 @@ def response_table(solved: xr.Dataset, contact_model: str) -> tuple[xr.DataArray
     The dimensions of the responses are M, L, slide-to-roll ratio, roller, angle (one for lines),
     wavelength and position.
     """
-    name, *_ = KINDS[contact_model]
+    name = NAMES[contact_model]
     table = solved[f"{name}_real"] + 1j * solved[f"{name}_imaginary"]
     if contact_model == "line":
         table = table.expand_dims(wave_angle=[0.0])

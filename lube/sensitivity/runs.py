@@ -90,10 +90,10 @@ def is_sum(deviating: Deviating, model: Model) -> bool:
     return model.contact_model == "surface" and others > 1 and len(nearer) == 2**others - 1
 
 
-def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> Array:
-    """Find which of some samples choose a model; `numbers` are their deviations."""
+def is_chosen(deviating: Deviating, made: dict, numbers: dict, count: int) -> Array:
+    """Find which of some samples make some choices; `numbers` are their deviations."""
     chosen = np.ones(count, bool)
-    for name, choice in model._asdict().items():
+    for name, choice in made.items():
         if name in numbers:
             choices = getattr(deviating.study.uncertainty, name).choices
             chosen &= numbers[name] == choices.index(choice)
@@ -234,7 +234,7 @@ def run_all(deviating: Deviating, unit: Array, points: xr.Dataset) -> Array:
     runs = points.isel(point=np.tile(np.arange(number), len(unit))).rename(point="run")
     values, found = deviations(deviating.factors, samples), np.full(len(samples), np.nan)
     for model in models(deviating):
-        some = np.flatnonzero(is_chosen(deviating, model, values, len(samples)))
+        some = np.flatnonzero(is_chosen(deviating, model._asdict(), values, len(samples)))
         if some.size:
             table = run(deviating, model, samples[some], runs.isel(run=some))
             # Without a value where the layer holds in all contacts that were sampled.

@@ -11,7 +11,7 @@ from scipy.interpolate import NdBSpline, make_interp_spline
 from lube.grid.gap import Gap
 from lube.grid.levels import rolling
 from lube.sensitivity.conditions import Deviating
-from lube.sensitivity.responses import KINDS, NUMBERS, response_table, typical_films
+from lube.sensitivity.responses import HEIGHTS, NUMBERS, response_table, typical_films
 from lube.study.uncertainty import deviating_lines
 
 NODES = {"moes_load": 12, "moes_material": 7, "contact_half_width": 6, "lambda_ratio": 20}
@@ -96,14 +96,13 @@ def _shapes(deviating, numbers):
 
 def _deformed(deviating, solved, contact_model, half_widths, band):
     """Rms heights over those drawn: over M, L, half-width, the factors of the band, and window."""
-    heights_of = KINDS[contact_model][2]
     table, wavelength = response_table(solved, contact_model)
     table = table.sel(slide_to_roll_ratio=rolling(deviating.study.slips))
     square = (np.abs(table) ** 2).interp(response_position=WINDOW).values
     found = []
     for half_width, *values in itertools.product(half_widths, *band.values()):
         lines = deviating_lines(deviating.study.line_spec, dict(zip(band, values, strict=True)))
-        heights = heights_of(lines, half_width * wavelength)
+        heights = HEIGHTS[contact_model](lines, half_width * wavelength)
         found.append(np.einsum("raw,mlrawx->mlx", heights / heights.sum(), square))
     found = np.sqrt(np.stack(found, axis=2))
     levels = [each.size for each in (half_widths, *band.values())]

@@ -44,11 +44,10 @@ FIGURES = ("bias", "rms_difference", "logit_rms_difference", "overlap_share")
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``comparison.nc``; see `lube.stages`."""
     film, contact, experiment = (inputs.get(kind) for kind in ("film", "contact", "experiment"))
-    if contact is not None:
-        model = model_at_records(experiment, film, contact, study)
+    if contact is None:
+        model = study_films_at_records(study, experiment)
     else:
-        model, spec = study_films_at_records(study, experiment), study.line_spec
-        model.attrs = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
+        model = model_at_records(experiment, film, contact, study)
     surfaces = inputs.get("surface_records")
     return compare(model, experiment, film, study.contact_model, surfaces, study.seed)
 

@@ -21,14 +21,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 def make_batch(study: Study, film: xr.Dataset, lines: xr.Dataset) -> xr.Dataset:
     """Make a batch of ``contact.nc``; see `lube.stages`."""
-    return contact_statistics(
-        lines,
-        film,
-        study.boundary_layer,
-        study.operating_grid.slide_to_roll_ratio,
-        study.revolutions,
-        study.gap,
-    )
+    layer, slips = study.boundary_layer, study.slips
+    return contact_statistics(lines, film, layer, slips, study.revolutions, study.gap)
 
 
 def contact_statistics(

@@ -1,5 +1,7 @@
 """The electrical stage: what electrical meters read at every operating point."""
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -94,27 +96,17 @@ def _impedance_phases(rigs, share, resistance, capacitance):
 
 def _capacitances(study, film):
     """Capacitance of the rough contact and around it, and films by which meters explain it, m."""
-    rig, layer = study.rig, study.boundary_layer.critical_thickness
-    mean_gap = film["film_thickness"]
+    mean_gap, layer = film["film_thickness"], study.boundary_layer.critical_thickness
     inverse = [electrical.mean_inverse_gap(*gap, layer).mean() for gap in _gaps(study, film)]
     read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
-    half_width, length = film["contact_half_width"], study.rollers.length
-    permittivity = rig.oil_permittivity
-    around = xr.apply_ufunc(
-        electrical.surrounding_capacitance,
-        mean_gap,
-        half_width,
-        film["reduced_radius"],
-        length,
-        permittivity,
-    )
+    half_width, radius = film["contact_half_width"], film["reduced_radius"]
+    length, oil = study.rollers.length, study.rig.oil_permittivity
+    around = partial(electrical.surrounding_capacitance, length=length, oil=oil)
     return {
         "film_thickness": mean_gap,
-        "capacitance": electrical.film_capacitance(read, half_width, length, permittivity),
-        "plate_capacitance": electrical.film_capacitance(
-            mean_gap, half_width, length, permittivity
-        ),
-        "surrounding_capacitance": around,
+        "capacitance": electrical.film_capacitance(read, half_width, length, oil),
+        "plate_capacitance": electrical.film_capacitance(mean_gap, half_width, length, oil),
+        "surrounding_capacitance": xr.apply_ufunc(around, mean_gap, half_width, radius),
         "capacitance_film": read,
     }
 

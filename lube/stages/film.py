@@ -17,15 +17,8 @@ from lube.types import Datasets
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film.nc``; see `lube.stages`."""
     oil, rollers, grid = inputs["lubricant"], study.rough_rollers, study.operating_grid
-    return film_table(
-        oil,
-        rollers,
-        grid.force,
-        grid.speed,
-        study.film_formulas,
-        slide_to_roll_ratio=study.slips,
-        **study.film_model,
-    )
+    choices = study.film_model | {"slide_to_roll_ratio": study.slips}
+    return film_table(oil, rollers, grid.force, grid.speed, study.film_formulas, **choices)
 
 
 def film_table(
@@ -109,19 +102,9 @@ def film_table(
     levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
     forces, speeds, slips = (axes[name] for name in levels)
-    table = film_at(
-        lubricant,
-        rollers,
-        forces,
-        speeds,
-        formulas,
-        with_shape,
-        slips,
-        inlet_shear_heating,
-        inlet_meniscus,
-        answered_lines,
-        rough_surfaces=rough_surfaces,
-        load_sharing=load_sharing,
-    )
+    inlet = {"inlet_shear_heating": inlet_shear_heating, "inlet_meniscus": inlet_meniscus}
+    surfaces = {"rough_surfaces": rough_surfaces, "load_sharing": load_sharing}
+    choices = inlet | surfaces | {"answered_lines": answered_lines}
+    table = film_at(lubricant, rollers, forces, speeds, formulas, with_shape, slips, **choices)
     dims = CONTACT_DIMS[0], "roller", *CONTACT_DIMS[1:]
     return label(table.transpose(*dims, ..., missing_dims="ignore"), "film")

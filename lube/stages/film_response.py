@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from lube.grid.film_responses import VARIABLES
-from lube.grid.films import film_at
+from lube.grid.films import answered_films
 from lube.schema import FILES, label
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import RollerPair
@@ -14,16 +14,11 @@ from lube.types import Datasets
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film_response.nc``; see `lube.stages`."""
+    oil, film, rollers = inputs["lubricant"], inputs["film"], study.rough_rollers
     if study.answered_lines is not None:
-        return _as_file(inputs["film"])  # it has the responses already
-    return film_responses(
-        inputs["lubricant"],
-        inputs["film"],
-        study.rough_rollers,
-        study.line_spec,
-        threads=threads,
-        **study.inlet_model,
-    )
+        return _as_file(film)  # it has the responses already
+    choices = study.inlet_model | {"threads": threads}
+    return film_responses(oil, film, rollers, study.line_spec, **choices)
 
 
 def film_responses(
@@ -54,19 +49,9 @@ def film_responses(
         The ``film_response`` file of `lube.schema`, by `lube.grid.film_responses.wave_responses`.
         Where the film did not converge, the response is NaN and the log says so.
     """
-    solved = film_at(
-        lubricant,
-        rollers,
-        film["force"],
-        film["speed"],
-        ["computed"],
-        slide_to_roll_ratio=film["slide_to_roll_ratio"],
-        inlet_shear_heating=inlet_shear_heating,
-        inlet_meniscus=inlet_meniscus,
-        answered_lines=spec,
-        threads=threads,
-    )
-    return _as_file(solved)
+    inlet = {"inlet_shear_heating": inlet_shear_heating, "inlet_meniscus": inlet_meniscus}
+    choices = inlet | {"answered_lines": spec, "threads": threads}
+    return _as_file(answered_films(film, lubricant, rollers, **choices))
 
 
 def _as_file(film):

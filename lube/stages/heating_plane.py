@@ -3,7 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from lube.physics.inlet_heating import INLET_HEATING, heating_factor, thermal_loading
+from lube.grid.films import inlet_loading
+from lube.physics.inlet_heating import INLET_HEATING, heating_factor
 from lube.physics.regimes import asymptotic_gap
 from lube.schema import label, with_dims
 from lube.study.study import Study
@@ -38,8 +39,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     factors = [
         heating_factor(model, LOADINGS[:, None], SLIPS, pressure, thickness) for model in models
     ]
-    oil = [lubricant[name] for name in ("dynamic_viscosity", "temperature_viscosity_coefficient")]
-    loading = thermal_loading(*oil, film["entrainment_speed"], lubricant["thermal_conductivity"])
+    loading = inlet_loading(lubricant, film["entrainment_speed"])
     values = {
         "inlet_shear_heating_factor": factors,
         "relative_hertz_pressure": pressure,

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
-from lube.contact.ensemble import PROBABILITIES, with_limits
+from lube.contact.ensemble import ATTRIBUTES, PROBABILITIES, with_limits
 from lube.contact.windows import study_windows
 from lube.grid.operating_points import at_slip
 from lube.kernels.synthesis import mean_powers
@@ -65,7 +65,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     independent = xr.DataArray(spec.independent_windows(2.0 * half_width))
     found = with_limits(xr.Dataset(table, levels).transpose("realisation", ...), independent)
     found = found.drop_vars(PROBABILITIES).assign(contact_half_width=half_width)
-    attributes = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
+    attributes = {name: getattr(spec, name) for name in ATTRIBUTES}
     return label(found.assign_coords(revolutions=1).assign_attrs(attributes), "height_distribution")
 
 

@@ -31,11 +31,7 @@ def make_batch(study: Study, film: xr.Dataset, lines: xr.Dataset) -> xr.Dataset:
     return contact_map(lines, film, study.boundary_layer)
 
 
-def contact_map(
-    lines: xr.Dataset,
-    film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-) -> xr.Dataset:
+def contact_map(lines: xr.Dataset, film: xr.Dataset, boundary_layer: BoundaryLayer) -> xr.Dataset:
     """Map the probabilities in pure rolling over lambda ratio and contact width.
 
     The probabilities of a realisation depend on the operating conditions only through the film

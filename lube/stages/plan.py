@@ -35,19 +35,17 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = film.transpose(*POINT_DIMS, ...)
     threshold, reading = _reading(inputs["electrical"], study)
     by_coefficient = _by_coefficient(study, inputs["lubricant"], film, slip)
-    unknown = {"half_width": dict.fromkeys(study.contact_model, 0.0)}
-    if "sensitivity" in inputs:
-        unknown["half_width_assumed"] = _assumed(inputs["sensitivity"], study)
     coordinates = {name: film[name].values for name in POINT_DIMS}
     coordinates |= {"quantity": list(planning.QUANTITIES), "turns": list(TURNS)}
     sizes, tables = [film.sizes[name] for name in POINT_DIMS], {}
     for model in study.contact_model:
         of_model = _of_lines if model == "line" else _of_surfaces
         scatter = of_model(study, inputs, film, slip, reading, threads)
-        others = {name: by_model[model] for name, by_model in unknown.items()}
-        values = {}
-        for name, each in _expected(scatter, by_coefficient, others).items():
-            values[name] = _digits(each.reshape(*each.shape[:-1], *sizes))
+        unknown = {"half_width": 0.0}
+        if "sensitivity" in inputs:
+            unknown["half_width_assumed"] = _assumed(inputs["sensitivity"], study, model)
+        found = _expected(scatter, by_coefficient, unknown).items()
+        values = {name: _digits(each.reshape(*each.shape[:-1], *sizes)) for name, each in found}
         values["best_threshold"] = threshold
         tables[model] = xr.Dataset(with_dims("plan", values), coordinates)
     dataset = over_contact_models("plan", tables) if study.has_surfaces else tables["line"]
@@ -61,13 +59,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 def _by_coefficient(study, lubricant, film, slip):
     """Slope of the film's logarithm over that of the pressure-viscosity coefficient, (P,)."""
     options = study.inlet_model | {"slide_to_roll_ratio": slip}
+    rollers, formula = study.rough_rollers, study.film_formulas[0]
     found = planning.film_by_coefficient(
-        lubricant,
-        study.rough_rollers,
-        film["force"],
-        film["speed"],
-        study.film_formulas[0],
-        **options,
+        lubricant, rollers, film["force"], film["speed"], formula, **options
     )
     return found.transpose(*POINT_DIMS).values.ravel()
 
@@ -148,11 +142,14 @@ def _reading(electrical, study):
     return best["threshold"].item(), best.fillna(best.mean()).values.ravel()
 
 
-def _assumed(sensitivity, study):
+def _assumed(sensitivity, study, contact_model):
     """Return the standard deviation of ln P by all that each inference must know.
 
-    By contact model; NaN where the sensitivity study does not sample it.
+    NaN if the sensitivity study does not sample the contact model.
     """
+    open_choices = study.uncertainty.contact_model
+    if contact_model not in (open_choices.choices if open_choices else study.contact_model[:1]):
+        return np.nan
     total = sensitivity["log_probability_deviation"].transpose(*POINT_DIMS)
     parts = sensitivity["first_order"].clip(0.0, 1.0)
     each = zip(parts["factor"].values, sensitivity["group_of_factor"].values, strict=True)
@@ -162,9 +159,7 @@ def _assumed(sensitivity, study):
         unknown = [name for name, group in groups.items() if not {name, group} & given]
         part = parts.sel(factor=unknown).sum("factor").clip(0.0, 1.0)
         found.append((total * np.sqrt(part)).transpose(*POINT_DIMS).values.ravel())
-    by_quantity, open_choices = np.array(found)[:, None], study.uncertainty.contact_model
-    sampled = open_choices.choices if open_choices else study.contact_model[:1]
-    return {one: by_quantity if one in sampled else np.nan for one in study.contact_model}
+    return np.array(found)[:, None]
 
 
 def _to_measure(study, sensitivity, names):

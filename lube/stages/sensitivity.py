@@ -39,7 +39,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         choices = {one.name: len(one.given.choices) for one in factors if one.name in CHOICES}
         choices[SEED] = SEEDS
         screened = morris(names, predicted, study.seed, choices)
-    table = _limits(single) | _limits(grouped, "group_") | _limits(screened)
+    table = single | {f"group_{name}": each for name, each in grouped.items()} | screened
     table["log_probability_deviation"] = values.std(axis=0)
     with np.errstate(invalid="ignore"):
         band = np.exp(np.quantile(values, (0.5, *BAND), axis=0))
@@ -55,16 +55,3 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     groups = list(dict.fromkeys(of_factor))
     coordinates = deviating.levels | {"factor": names, "factor_group": groups}
     return label(xr.Dataset(with_dims("sensitivity", found), coordinates), "sensitivity")
-
-
-def _limits(found, prefix=""):
-    """Values with their limits, and what has none."""
-    table = {}
-    for name, values in found.items():
-        if name.endswith("_error"):
-            of, error = name.removesuffix("_error"), values
-            table[f"{prefix}{of}_lower"] = found[of] - error
-            table[f"{prefix}{of}_upper"] = found[of] + error
-        else:
-            table[f"{prefix}{name}"] = values
-    return table

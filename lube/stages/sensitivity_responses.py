@@ -5,7 +5,7 @@ import xarray as xr
 
 from lube.schema import FILES, label
 from lube.sensitivity.conditions import Deviating
-from lube.sensitivity.responses import KINDS, solve_responses
+from lube.sensitivity.responses import NAMES, solve_responses
 from lube.sensitivity.runs import design, models
 from lube.study.study import Study
 from lube.types import Datasets
@@ -20,7 +20,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     table = solve_responses(
         deviating, contact_models, np.concatenate(units), xr.concat(points, "run"), threads
     )
-    names = [f"{KINDS[one][0]}_{part}" for one in contact_models for part in ("real", "imaginary")]
+    names = [f"{NAMES[one]}_{part}" for one in contact_models for part in ("real", "imaginary")]
     dims = FILES["sensitivity_responses"]["surface_response_real"].dims
     table = table[[*names, "contact_half_width"]].transpose(*dims, missing_dims="ignore")
     return label(table, "sensitivity_responses")

@@ -2,7 +2,7 @@
 
 import xarray as xr
 
-from lube.grid.films import film_at
+from lube.grid.films import answered_films
 from lube.schema import FILES, label
 from lube.study.study import Study
 from lube.types import Datasets
@@ -10,18 +10,8 @@ from lube.types import Datasets
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``surface_response.nc``; see `lube.stages`."""
-    film = inputs["film"]
-    table = film_at(
-        inputs["lubricant"],
-        study.rough_rollers,
-        film["force"],
-        film["speed"],
-        ["computed"],
-        slide_to_roll_ratio=film["slide_to_roll_ratio"],
-        answered_surfaces=study.line_spec,
-        threads=threads,
-        **study.inlet_model,
-    )
+    choices = study.inlet_model | {"answered_surfaces": study.line_spec, "threads": threads}
+    table = answered_films(inputs["film"], inputs["lubricant"], study.rough_rollers, **choices)
     table = table.rename(response_position="film_position")
     variables = FILES["surface_response"]
     dims = variables["surface_response_real"].dims

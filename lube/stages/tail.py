@@ -6,13 +6,14 @@ import xarray as xr
 
 from lube.contact.ensemble import PROBABILITIES
 from lube.contact.rough_pair import RoughPair
-from lube.contact.windows import FLATTENED, ContactWindows, study_windows
+from lube.contact.surface_strip import mean_breaking_curvature
+from lube.contact.windows import FLATTENED, ContactWindows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import Gap
 from lube.grid.operating_points import over_contact_models, surface_speeds
 from lube.physics.excursions import crossing_rate
-from lube.physics.summits import breaking_curvature, sharp_summit_share
+from lube.physics.summits import sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import breakthrough_limit, mean_interval
 from lube.statistics.sample_size import independent_windows
@@ -87,17 +88,15 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 def _on_lines(study, film, threads):
     """Variables of lines, unlabelled."""
-    spec, gap, levels = study.line_spec, study.gap, np.asarray(study.slips, float)
+    pair, levels = RoughPair.of(study), np.asarray(study.slips, float)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
-    windows, tables = study_windows(study, film), []
-    of_one = windows.size // film.sizes["film_formula"]
-    first, others = (slice(1), slice(of_one)), (slice(1, None), slice(of_one, None))
-    for (formulas, points), pairs in (first, PAIRS), (others, FEWER_PAIRS):
+    tables = []
+    for formulas, pairs in (slice(1), PAIRS), (slice(1, None), FEWER_PAIRS):
         some = film.isel(film_formula=formulas)
         if some["film_formula"].size:
-            found = _sampled(spec, some, windows[points], levels, study.seed, pairs, threads)
-            tables.append(_table(spec, some, study.boundary_layer, *found, levels, gap))
+            found = _sampled(pair, some, levels, pairs, threads)
+            tables.append(_table(pair, some, *found, levels))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
     return table.assign_coords(coordinates).transpose(_SLIP, *OPERATING_DIMS)
@@ -200,14 +199,12 @@ def pair_probabilities(
         quantity of several points is first computed on each pair. The attribute ``remarks`` is as
         in ``tail.nc``.
     """
-    spec, gap = pair.spec, pair.gap
-    if remark := why_counted(spec, gap):
+    if remark := why_counted(pair.spec, pair.gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
         names = *PROBABILITIES, "breakthrough_rate"
         return xr.Dataset(dict.fromkeys(names, unknown), attrs={"remarks": remark})
-    windows = ContactWindows(spec, film, pair.layer, gap)
-    table, runs = _sampled(spec, film, windows, slide_to_roll_ratio, pair.seed, PAIRS)
-    table["breakthrough_rate"] = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
+    table, runs = _sampled(pair, film, slide_to_roll_ratio, PAIRS)
+    table["breakthrough_rate"] = _in_time(pair, film, runs, slide_to_roll_ratio)[1]
     return table.assign_attrs(remarks="").transpose("pair", *film["film_thickness"].dims)
 
 
@@ -271,15 +268,15 @@ def _unknown(film, slide_to_roll_ratio):
     return xr.Dataset(empty)
 
 
-def _table(spec, film, boundary_layer, of_pairs, runs, slide_to_roll_ratio, gap):
+def _table(pair, film, of_pairs, runs, slide_to_roll_ratio):
     """Variables of some film formulas, unlabelled."""
-    slip = xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
+    spec, slip = pair.spec, xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
     rolling = of_pairs.map(_in_pure_rolling)
-    in_window, rate = _in_time(spec, film, runs, slip, gap)
+    in_window, rate = _in_time(pair, film, runs, slip)
     of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
     turn = spec.points[0] * spec.spacing / surface_speeds(film["entrainment_speed"], slip)[0]
     duration = in_window.mean("pair") / rate.mean("pair")
-    if gap.is_uniform:
+    if pair.gap.is_uniform:
         in_a_revolution = _in_a_revolution(spec, film, _in_pure_rolling(runs), rolling)
     else:
         turns, lasting = map(_in_pure_rolling, (turn, duration))
@@ -289,22 +286,22 @@ def _table(spec, film, boundary_layer, of_pairs, runs, slide_to_roll_ratio, gap)
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": duration,
         **in_a_revolution,
-        **_asymptotes(spec, film, boundary_layer, gap),
+        **_asymptotes(pair, film),
     }
     return xr.Dataset(table)
 
 
-def _in_time(spec, film, runs, slip, gap):
+def _in_time(pair, film, runs, slip):
     """Calculate the mean number of broken runs in the window, and of new ones per second."""
-    if not gap.is_uniform:
-        return _in_uneven_windows(spec, film, runs, slip)
-    points = _window_points(spec, film)
+    if not pair.gap.is_uniform:
+        return _in_uneven_windows(pair.spec, film, runs, slip)
+    points = _window_points(pair.spec, film)
     _, broken, _, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
     # A run is in the window if any of its points is.
     in_window = broken * (points - 1.0) + broken_points
     new_in_window = new * (points - 1.0) + new_points
     speed = film["entrainment_speed"]
-    return in_window, speed / spec.spacing * (broken + abs(slip) * new_in_window)
+    return in_window, speed / pair.spec.spacing * (broken + abs(slip) * new_in_window)
 
 
 def _in_uneven_windows(spec, film, runs, slip):
@@ -345,24 +342,25 @@ def _window_points(spec, film):
     return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
 
 
-def _sampled(spec, film, windows, slips, seed, pairs, threads=None):
+def _sampled(pair, film, slips, pairs, threads=None):
     """Probabilities over pair and the film's dimensions, and numbers of runs, over outcome too."""
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     dims = ("pair", "outcome", *thickness.dims)
+    windows = ContactWindows(pair.spec, film, pair.layer, pair.gap)
     if _SLIP in film["film_thickness"].dims:
         slips = film[_SLIP]
     if isinstance(slips, xr.DataArray):  # one at each point
         slips = slips.broadcast_like(thickness).transpose(*thickness.dims).values.reshape(-1, 1)
 
     def on_one_pair(number):
-        return windows.sample(spec, seed, number, np.atleast_2d(slips))
+        return windows.sample(pair.spec, pair.seed, number, np.atleast_2d(slips))
 
     found = on_threads(on_one_pair, range(pairs), threads, "rare contact of lines")
-    windows, runs = (
+    in_window, runs = (
         xr.DataArray(np.reshape(each, (pairs, -1, *thickness.shape)), thickness.coords, dims)
         for each in zip(*found, strict=True)
     )
-    contact, breakthrough = windows.transpose("outcome", ...)
+    contact, breakthrough = in_window.transpose("outcome", ...)
     return xr.Dataset(dict(zip(PROBABILITIES, (breakthrough, contact), strict=True))), runs
 
 
@@ -402,25 +400,21 @@ def _wait(expected):
     return xr.where(expected < 1e-4, 0.5 - expected / 12.0, exact)
 
 
-def _asymptotes(spec, film, boundary_layer, gap):
+def _asymptotes(pair, film):
     """Theory for high films: the window's first point touches, or a crossing lies in the window.
 
     The boundary layer breaks if the summit that follows is sharp enough.
     """
-    if gap.is_answered:  # the moments change along the window
+    if pair.gap.is_answered:  # the moments change along the window
         return dict.fromkeys(_ASYMPTOTES, xr.full_like(film["film_thickness"], np.nan))
-    curvature = breaking_curvature(
-        film["reduced_modulus"].item(),
-        boundary_layer.critical_thickness,
-        boundary_layer.shear_strength,
-    )
-    moments = pair_moments(spec)
-    films = shaped_films(film) if gap.has_shape else film["film_thickness"]
+    # The line's criterion is twice that of the surface.
+    moments, curvature = pair_moments(pair.spec), 2.0 * mean_breaking_curvature(pair, film)
+    films = shaped_films(film) if pair.gap.has_shape else film["film_thickness"]
     rows = films.values.reshape(-1, films.shape[-1])
     # Row by row: the integral over the curvature takes a thousand times the memory of the films.
     shares = [sharp_summit_share(row, moments, curvature) for row in rows]
     share, rate = films.copy(data=np.reshape(shares, films.shape)), crossing_rate(films, moments)
-    if gap.has_shape:  # the slope of the film is neglected
+    if pair.gap.has_shape:  # the slope of the film is neglected
         crossings = rate * film["contact_half_width"]
         values = [each.integrate("film_position") for each in (crossings, crossings * share)]
     else:

@@ -139,14 +139,9 @@ def _film_by(study, inputs, formula, shape):
     """Film by another formula, or that shares the load by another shape."""
     changed = {"with_shape": shape == "computed", "answered_lines": None}
     changed["slide_to_roll_ratio"] = rolling(study.slips)
-    film = film_at(
-        inputs["lubricant"],
-        study.rough_rollers,
-        inputs["film"]["force"],
-        inputs["film"]["speed"],
-        [formula],
-        **study.film_model | changed,
-    )
+    oil, rollers, choices = inputs["lubricant"], study.rough_rollers, study.film_model | changed
+    force, speed = inputs["film"]["force"], inputs["film"]["speed"]
+    film = film_at(oil, rollers, force, speed, [formula], **choices)
     return film[["film_thickness", "formula_place"]].isel(film_formula=0)
 
 

@@ -8,7 +8,7 @@ from studies import CONFIG
 from lube.sensitivity import runs
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.responses import (
-    KINDS,
+    NAMES,
     NUMBERS,
     slips_of,
     solve_responses,
@@ -63,7 +63,7 @@ def test_responses_are_those_of_the_heated_and_sliding_films_themselves(contact_
     found = with_responses(film, solved, contact_model, slips_of(study, points))
     kind = {"line": "answered_lines", "surface": "answered_surfaces"}[contact_model]
     ((_, exact),) = study.films(values, points, **{kind: study.study.line_spec})
-    name, *_ = KINDS[contact_model]
+    name = NAMES[contact_model]
     own, other = (each[f"{name}_real"] + 1j * each[f"{name}_imaginary"] for each in (found, exact))
     drawn = own["wavelength"] <= study.study.line_spec.longest_wavelength
     own = own.isel(wavelength=drawn).sel(response_position=slice(-1.0, 1.0))

@@ -119,7 +119,7 @@ def test_where_the_oil_deforms_the_roughness_as_many_points_touch_as_under_the_f
     table = effective_ratio(deviating, film, model.gap, contact_model, solved)
     ratio = xr.full_like(film["lambda_ratio"], 3.0)
     found = table(ratio, film, values)
-    name, *_ = responses.KINDS[contact_model]
+    name = responses.NAMES[contact_model]
     expected = []
     for number in range(len(unit)):
         one = film.isel(run=number)

@@ -62,7 +62,6 @@ def without_lines(busy):
 
     def run(experiment):
         model = study_films_at_records(busy.study, experiment)
-        model.attrs = busy.contact.attrs
         surfaces = made_up_surfaces(model["lambda_ratio"])
         return compare(model, experiment, busy.film, ("surface",), surfaces)
 
