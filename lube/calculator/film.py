@@ -14,7 +14,7 @@ from lube.calculator.choices import FORMULA, Choices, Inlet
 from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.errors import StudyError, located
-from lube.grid.films import film_at
+from lube.grid.films import film_with_oil
 from lube.grid.plausibility import remarks
 from lube.study.rollers import RollerPair
 from lube.study.surface_checks import check_surfaces
@@ -183,12 +183,7 @@ def film_of_oil(oil: Oil, pair: RollerPair, point: Point, **choices: Any) -> xr.
     if heating != "none" and properties["thermal_conductivity"].isnull().any():
         needed = "need none, or an oil with thermal_conductivity"
         raise StudyError(f"inlet_shear_heating: got {heating}, {needed}")
-    table = film_at(properties, pair, point["force"], point["speed"], **choices)
-    if heating == "none":
-        del table["inlet_shear_heating_factor"]
-    if choices["inlet_meniscus"] is not None:
-        table["inlet_meniscus"] = choices["inlet_meniscus"]
-    return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
+    return film_with_oil(properties, pair, point["force"], point["speed"], **choices)
 
 
 def with_remarks(

@@ -114,6 +114,35 @@ def answered_films(film: xr.Dataset, lubricant: xr.Dataset, rollers, **model: An
     return film_at(lubricant, rollers, force, speed, ["computed"], **choices)
 
 
+def film_with_oil(
+    lubricant: xr.Dataset,
+    rollers,
+    force: xr.DataArray,
+    speed: xr.DataArray,
+    formulas: Sequence[str],
+    **model: Any,
+) -> xr.Dataset:
+    """Film by `film_at`, with all that `FilmGroups.of` needs.
+
+    Parameters
+    ----------
+    lubricant, rollers, force, speed, formulas, **model
+        As in `film_at`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same and ``dynamic_viscosity``, with a meniscus also ``inlet_meniscus``; without heating
+        at the inlet no factor of it.
+    """
+    table = film_at(lubricant, rollers, force, speed, formulas, **model)
+    if model.get("inlet_shear_heating", "none") == "none":
+        del table["inlet_shear_heating_factor"]
+    if model.get("inlet_meniscus") is not None:
+        table["inlet_meniscus"] = model["inlet_meniscus"]
+    return table.assign(dynamic_viscosity=lubricant["dynamic_viscosity"])
+
+
 def _films(rows, groups, contact):
     """Contact, Moes' numbers, and the films by some formulas."""
     moes_numbers = groups.moes_numbers

@@ -15,7 +15,7 @@ import xarray as xr
 from lube.contact.ensemble import ATTRIBUTES
 from lube.contact.rough_pair import drawn
 from lube.contact.windows import study_windows
-from lube.grid.films import film_at
+from lube.grid.films import film_with_oil
 from lube.grid.operating_points import at_slip
 from lube.inference.record_scatter import record_scatter
 from lube.schema import FILES, OPERATING_DIMS, with_dims
@@ -121,14 +121,9 @@ def film_at_records(
     force, speed, temperature, oil, slip = columns
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
     choices = film_model | {"slide_to_roll_ratio": slip}
-    table = film_at(properties, rollers, force, speed, formulas, **choices)
-    table["dynamic_viscosity"] = properties["dynamic_viscosity"]
-    if film_model.get("inlet_shear_heating", "none") == "none":
-        del table["inlet_shear_heating_factor"]
+    table = film_with_oil(properties, rollers, force, speed, formulas, **choices)
     if film_model.get("load_sharing", "none") == "none":
         table = table.drop_vars("surface_load_share", errors="ignore")
-    if film_model.get("inlet_meniscus") is not None:
-        table["inlet_meniscus"] = film_model["inlet_meniscus"]
     return table.transpose("film_formula", "record", ...)
 
 
