@@ -24,6 +24,8 @@ _MANY, _FEW = 60, 20
 by 0.001."""
 _NODES = {count: (*laggauss(count), *leggauss(count)) for count in (_MANY, _FEW)}
 _OTHERS = leggauss(12)
+_LOWEST = 0.2
+"""Rms heights: summits above lower levels are taken as those above this one."""
 _WIDE, _NEAR = 9.0, 5.0
 """Standard deviations beyond which the normal density of mean curvatures, or of d and t, is cut."""
 
@@ -330,7 +332,8 @@ def _above(level, moments, weight, nodes):
     m0, covariance, variance = (_apart(each) for each in moments)
     above, above_weights, curvatures, curvature_weights = _NODES[nodes]
     # Heights are integrated by Gauss-Laguerre quadrature, with z = h + m0 t / h.
-    scale = _apart(level)
+    # Lower levels would need more nodes, and change little.
+    scale = np.maximum(_apart(level), _LOWEST * np.sqrt(m0))
     height = scale + m0 / scale * above
     heights = above_weights * np.exp(-0.5 * m0 * (above / scale) ** 2)
     # Curvatures, which are normal at a given height, by Gauss-Legendre quadrature.

@@ -24,7 +24,7 @@ def test_all_summits_are_sharper_than_flat_and_none_than_a_needle():
     assert np.all(sharp_summit_share(levels, MOMENTS, 1e3) < 1e-100)
 
 
-@pytest.mark.parametrize("level", [1.0, 4.0, 8.0])
+@pytest.mark.parametrize("level", [1e-9, 0.1, 1.0, 4.0, 8.0])
 def test_sharp_summits_by_numerical_integration(level):
     m0, m2, m4 = MOMENTS
     density = scipy.stats.multivariate_normal([0.0, 0.0], [[m0, m2], [m2, m4]])
@@ -37,7 +37,9 @@ def test_sharp_summits_by_numerical_integration(level):
         return scipy.integrate.simpson(inner, grid[0][:, 0])
 
     expected = summits(9.0) / summits(0.0)
-    assert sharp_summit_share(np.array([level]), MOMENTS, 9.0) == pytest.approx(expected, rel=1e-4)
+    # Of levels as low as a fraction of the rms height not much is asked.
+    error = 0.03 if level < 0.3 else 1e-4
+    assert sharp_summit_share(np.array([level]), MOMENTS, 9.0) == pytest.approx(expected, rel=error)
 
 
 def test_the_layer_breaks_at_the_curvature_where_the_remaining_thickness_is_critical():
