@@ -149,7 +149,7 @@ def sharp_surface_summit_share(
     Returns
     -------
     numpy.ndarray
-        Fraction at each level, from 0 to 1.
+        Fraction at each level, from 0 to 1; 0 where there are no summits.
 
     References
     ----------
@@ -166,7 +166,7 @@ def sharp_surface_summit_share(
     """
     summits = _every_summit(level, moments, curvatures)
     # The sums are not exact to the last digits.
-    return np.minimum(summits.sharper(curvature) / summits.sharper(0.0), 1.0)
+    return np.minimum(_over(summits.sharper(curvature), summits.sharper(0.0)), 1.0)
 
 
 def sharpening_summits(
@@ -201,7 +201,8 @@ def sharpening_summits(
     Returns
     -------
     numpy.ndarray
-        Per rolled distance, over the number of all summits above each level, 1/m.
+        Per rolled distance, over the number of all summits above each level, 1/m; 0 where there are
+        none.
 
     References
     ----------
@@ -236,7 +237,13 @@ def sharpening_summits(
         return _mean(lambda twist: speed(kappa, difference, twist), twist, spread, bound)
 
     summits = _summits(level, moments, _weight(moments, curvatures, mean_speed), _FEW)
-    return summits.at(curvature) / every / math.sqrt(2.0 * math.pi)
+    return _over(summits.at(curvature), every) / math.sqrt(2.0 * math.pi)
+
+
+def _over(some, every):
+    """Ratio; 0 where heights far above the mean are no summits, as the oil may flatten them."""
+    some, every = np.broadcast_arrays(some, every)
+    return np.divide(some, every, out=np.zeros(every.shape), where=every > 0.0)
 
 
 def _every_summit(level, moments, curvatures):

@@ -59,6 +59,15 @@ def test_all_summits_of_a_surface_are_sharper_than_flat_and_none_than_a_needle()
     assert np.all(sharp_surface_summit_share(levels, SURFACE, 1e3) < 1e-100)
 
 
+def test_where_what_is_high_is_hollow_there_are_no_summits():
+    """So it is where the response of the film turns the phase of the waves."""
+    hollow = SurfaceMoments(2.0, along=-6.0, across=0.0, mixed=0.0, curvature=40.0)
+    curvatures = 10.0 * np.diag([1.0, 0.5, 0.5])
+    assert sharp_surface_summit_share(np.array([12.0]), hollow, 1.0, curvatures) == 0.0
+    motion = SummitMotion(np.ones(1), *np.ones((2, 2, 2, 1)))
+    assert sharpening_summits(np.array([12.0]), hollow, 1.0, curvatures, motion) == 0.0
+
+
 def test_sharp_summits_of_a_surface_are_those_of_drawn_critical_points():
     m2, cross = SURFACE.along, SURFACE.curvature / 8.0
     hessian = np.array([[3.0 * cross, cross, 0.0], [cross, 3.0 * cross, 0.0], [0.0, 0.0, cross]])
