@@ -140,7 +140,8 @@ def profile(
     >>> f"{found.central_film.item():.2f} um, least {found.minimum_film.item():.2f} um"
     '1.02 um, least 0.85 um'
     """
-    table = film_profile_table(*_one_point(rollers, oil, force, speed, temperature))
+    one = _one_point(rollers, oil, force, speed, temperature)
+    table = film_profile_table(*one, with_whole_pressure=True)
     found = table.isel(dict.fromkeys(POINT_DIMS, 0))
     if np.isnan(found["central_film"]):
         raise RangeError(f"the film at {force}, {speed} and {temperature} did not converge")

@@ -40,7 +40,7 @@ between realisations, since neighbouring windows see nearly the same points."""
 NO_SLIPS = np.empty((1, 0))
 FLATTENED = (
     "roughness_deformation: got venner-1997, need none or computed: lines that a formula flattens "
-    "cannot be sampled"
+    "cannot be sampled, and the formula is wrong below M = 20"
 )
 
 

@@ -144,6 +144,11 @@ class FilmProfile:
         """Pressure over Hertz' maximum pressure, at positions over the half-width."""
         return np.interp(position, self.nodes, self.pressure, left=0.0, right=0.0)
 
+    @property
+    def pressure_reach(self) -> float:
+        """Distance before the contact, over the half-width, with a thousandth of the pressure."""
+        return -self.nodes[np.argmax(self.pressure >= 1e-3 * self.pressure.max())]
+
     @cached_property
     def middle(self) -> Array:
         """Positions midway between the nodes, where the equation holds."""

@@ -17,7 +17,9 @@ _REACH = 12.0
 line is so high."""
 
 
-def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GROWTH) -> Array:
+def film_positions(
+    contact: xr.Dataset, step: float = _STEP, growth: float = _GROWTH, reach: float = 0.0
+) -> Array:
     """Choose the positions at which computed films are stored.
 
     Parameters
@@ -26,6 +28,8 @@ def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GR
         With ``contact_half_width``, ``reduced_radius`` and ``composite_rms_roughness``, m.
     step, growth : float, optional
         Even spacing of positions near the contact, and ratio of neighbouring positions beyond.
+    reach : float, optional
+        Distance over the half-width that the positions span at least.
 
     Returns
     -------
@@ -44,14 +48,15 @@ def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GR
     # The gap is at least (X - 1)^2 a^2 / 2 R*; duty points may differ in radius and in width.
     scale = contact["contact_half_width"] ** 2 / (2.0 * contact["reduced_radius"])
     farthest = 1.0 + np.sqrt(_REACH * (contact["composite_rms_roughness"] / scale).max().item())
+    farthest = max(farthest, reach)
     even = np.arange(0.0, _EVEN + step / 2, step)
     count = max(1, int(np.ceil(np.log(farthest / _EVEN) / np.log(growth))))
     half = np.concatenate([even, _EVEN * growth ** np.arange(1, count + 1)]).round(6)
     return np.concatenate([-half[:0:-1], half])
 
 
-def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.DataArray:
-    """Sample a quantity of every film at the positions of `film_positions`.
+def over_positions(solved: xr.DataArray, sample, positions: Array) -> xr.DataArray:
+    """Sample a quantity of every film at some positions, such as those of `film_positions`.
 
     Parameters
     ----------
@@ -59,8 +64,8 @@ def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.Data
         Elements are a `lube.ehl.line_contact.FilmProfile`, or None where there is no film.
     sample : callable
         Function of a `FilmProfile` and positions that returns the quantity there.
-    contact : xarray.Dataset
-        As in `film_positions`.
+    positions : numpy.ndarray
+        Positions over the half-width.
 
     Returns
     -------
@@ -68,7 +73,6 @@ def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.Data
         Values to six digits, over the dimensions of `solved` and film_position; NaN where there is
         no film.
     """
-    positions = film_positions(contact)
 
     def values(film):
         return six_digits(sample(film, positions)) if film else np.full(positions.size, np.nan)

@@ -12,7 +12,7 @@ import xarray as xr
 from lube.digits import six_digits
 from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
-from lube.grid.film_profiles import over_positions
+from lube.grid.film_profiles import film_positions, over_positions
 from lube.grid.film_responses import surface_responses, wave_responses
 from lube.grid.load_sharing import share_load, surface_load_share
 from lube.physics import dimensionless, hertz
@@ -90,14 +90,14 @@ def film_at(
         if is_heated:
             table.update(table[_THINNED] * factor)
         if with_shape:
-            profile = over_positions(groups.profiles, FilmProfile.film_at, contact)
+            positions = film_positions(contact)
+            profile = over_positions(groups.profiles, FilmProfile.film_at, positions)
             table["film_profile"] = profile * rollers.reduced_radius
         if load_sharing == "iterated":
-            thinner = factor if is_heated else 1.0
-            films_at = partial(_films_at, rows, groups, rollers.reduced_radius, thinner)
-            shared = share_load(table, films_at, rough_surfaces, with_shape)
-            table["film_thickness"], table["surface_load_share"] = shared
-            table["lambda_ratio"] = table["film_thickness"] / contact["composite_rms_roughness"]
+            films_at = partial(
+                _films_at, rows, rollers.reduced_radius, factor if is_heated else 1.0
+            )
+            table = _with_shared_load(table, films_at, groups, rough_surfaces, with_shape)
         elif rough_surfaces is not None:
             table["surface_load_share"] = surface_load_share(table, rough_surfaces, with_shape)
         if answered_lines is not None or answered_surfaces is not None:
@@ -170,13 +170,26 @@ def _films(rows, groups, contact):
     )
 
 
-def _films_at(rows, groups, radius, thinner, part):
+def _films_at(rows, radius, thinner, groups, part):
     """Film thickness by some formulas if the oil carries a part of the load, m."""
     names, films = part["film_formula"], []
     for number, row in enumerate(rows):
         load = groups.load * part.isel(film_formula=number, drop=True)
         films.append(replace(groups, load=load).film(row))
     return thinner * radius * xr.concat(films, names, join="exact")
+
+
+def _with_shared_load(table, films_at, groups, rough_surfaces, with_shape):
+    """Films that carry the load together with the asperities, whose share is added."""
+    film, share = share_load(table, partial(films_at, groups), rough_surfaces, with_shape)
+    found = {
+        "film_thickness": film,
+        "surface_load_share": share,
+        "lambda_ratio": film / table["composite_rms_roughness"],
+    }
+    if groups.meniscus is not None:
+        found["starvation_factor"] = film / films_at(replace(groups, meniscus=None), 1.0 - share)
+    return table.assign(found)
 
 
 def _with_responses(table, solved, slip, specs, threads):

@@ -6,7 +6,7 @@ import xarray as xr
 
 from lube.digits import rounded
 from lube.ehl.line_contact import FilmProfile
-from lube.grid.film_profiles import over_positions
+from lube.grid.film_profiles import film_positions, over_positions
 from lube.grid.films import FilmGroups, hertz_contact
 from lube.schema import POINT_DIMS, label
 from lube.study.rollers import RollerPair
@@ -31,6 +31,7 @@ def film_profile_table(
     force: npt.ArrayLike,
     speed: npt.ArrayLike,
     inlet_meniscus: float | None = None,
+    with_whole_pressure: bool = False,
 ) -> xr.Dataset:
     """Compute pressure and film across the contact at every operating point.
 
@@ -38,6 +39,9 @@ def film_profile_table(
     ----------
     lubricant, rollers, force, speed, inlet_meniscus
         As in `lube.stages.film.film_table`.
+    with_whole_pressure : bool, optional
+        Whether the positions reach as far as the pressure does; by default they reach as far as
+        roughness may touch.
 
     Returns
     -------
@@ -51,8 +55,10 @@ def film_profile_table(
         groups = FilmGroups.at(lubricant, rollers, axes["force"], contact, inlet_meniscus)
         solved = groups.profiles.transpose(*POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
-    film = over_positions(solved, FilmProfile.film_at, contact)
-    pressure = over_positions(solved, FilmProfile.pressure_at, contact)
+    reach = groups.of_profiles("pressure_reach").max().item() if with_whole_pressure else 0.0
+    positions = film_positions(contact, reach=reach)
+    film = over_positions(solved, FilmProfile.film_at, positions)
+    pressure = over_positions(solved, FilmProfile.pressure_at, positions)
     table["film"] = film * rollers.reduced_radius
     table["pressure"] = pressure * table["hertz_pressure"]
     for name, digits in _DIGITS.items():

@@ -25,7 +25,8 @@ def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
 def test_a_profile_is_that_of_the_film_profile_stage(rollers, oil, busy):
     found = lube.profile(rollers, oil, **POINT)
     table = lubricant_table([oil.record], [60.0])
-    stage = film_profile_table(table, rollers.pair, [400.0], [100.0]).squeeze()
+    stage = film_profile_table(table, rollers.pair, [400.0], [100.0], with_whole_pressure=True)
+    stage = stage.squeeze()
     for name, of_stage, factor, units in (
         ("film", "film", 1e6, "um"),
         ("pressure", "pressure", 1e-6, "MPa"),
@@ -37,10 +38,23 @@ def test_a_profile_is_that_of_the_film_profile_stage(rollers, oil, busy):
     place = found["position"]
     np.testing.assert_allclose(place, 1e6 * stage.film_position * stage.contact_half_width)
     # It carries the load, and the film is thinnest before the end of the contact.
-    load = np.trapezoid(found["pressure"], place) * 1e6 * 1e-6 * rollers.pair.length
-    assert 380.0 < load < 401.0  # the rest is farther in the inlet
+    assert load_of(found, rollers) == pytest.approx(400.0, rel=6e-3)
     thinnest = place[np.argmin(found["film"].values)].item()
     assert 0.0 < thinnest < 1.2 * found["contact_half_width"].item()
+
+
+def load_of(profile, rollers):
+    """In N, from MPa and um."""
+    return np.trapezoid(profile["pressure"], profile["position"]) * rollers.pair.length
+
+
+def test_the_pressure_of_a_profile_carries_a_light_load_between_smooth_rollers(oil):
+    """It reaches far into the inlet, where no roughness touches."""
+    smooth, rough = (lube.Rollers("50 mm", rms) for rms in ("0.02 um", "0.8 um"))
+    light = POINT | {"force": "20 N"}
+    found, same = (lube.profile(each, oil, **light) for each in (smooth, rough))
+    assert load_of(found, smooth) == pytest.approx(20.0, rel=6e-3)
+    np.testing.assert_array_equal(found["pressure"], same["pressure"])
 
 
 def test_a_profile_is_of_one_point(rollers, oil):

@@ -44,12 +44,12 @@ def test_a_film_that_does_not_converge_is_missing_and_named(monkeypatch, caplog)
     assert profiles.tolist() == [None, None]
     assert "M = 1.93, L = 9.89 did not converge" in caplog.text
     solved = xr.DataArray(profiles, dims="speed")
-    assert np.isnan(over_positions(solved, FilmProfile.film_at, contact_of())).all()
+    assert np.isnan(over_positions(solved, FilmProfile.film_at, film_positions(contact_of()))).all()
 
 
 def test_profiles_are_those_of_the_solver_with_six_digits():
     solved = xr.DataArray(profiles_of(*np.array(GROUPS)[:, None]), dims="speed")
-    found = over_positions(solved, FilmProfile.film_at, contact_of())
+    found = over_positions(solved, FilmProfile.film_at, film_positions(contact_of()))
     positions = found["film_position"].values
     exact = line_contact.solve(line_contact.LineContact(*GROUPS)).film_at(positions)
     assert found.dims == ("speed", "film_position")

@@ -60,6 +60,20 @@ def test_the_film_is_that_of_the_load_that_the_asperities_leave(films, shape, st
         assert found != pytest.approx(whole["film_thickness"].sel(here).item(), rel=1e-3)
 
 
+def test_the_starvation_is_that_of_the_film_which_carries_the_rest_of_the_load(study, spec):
+    oil, meniscus = lubricant_table(study.lubricants, [80.0]), {"inlet_meniscus": 0.3e-3}
+    levels = [100.0], ["paper", "computed"]
+    sharing = {"rough_surfaces": spec, "load_sharing": "iterated"} | meniscus
+    shared = film_table(oil, study.rollers, [1600.0], *levels, **sharing)
+    for number in range(2):
+        left = 1600.0 * (1.0 - shared["surface_load_share"].isel(film_formula=number).item())
+        alone = film_table(oil, study.rollers, [left], *levels, **meniscus)
+        found, expected = (
+            each["starvation_factor"].isel(film_formula=number).item() for each in (shared, alone)
+        )
+        assert found == pytest.approx(expected, rel=1e-3) and found < 0.97
+
+
 @pytest.mark.parametrize("formula", ["moes", "computed"])
 def test_the_balance_is_found_where_asperities_carry_most_of_the_load(formula, study, spec):
     """With little load left rollers hardly deform, and the film is another power of the load."""
