@@ -116,7 +116,7 @@ def separated(film: xr.Dataset) -> xr.DataArray:
     return (film["lambda_ratio"] >= SEPARATING_RATIO) & ("rms_deformation" in film)
 
 
-def rubbing(film: xr.Dataset) -> xr.DataArray:
+def rubbing(film: xr.Dataset, part: float = LARGEST_SHARE) -> xr.DataArray:
     """Find the points where asperities of the surfaces carry much of the load.
 
     The film is that of smooth rollers, and less certain there.
@@ -125,13 +125,15 @@ def rubbing(film: xr.Dataset) -> xr.DataArray:
     ----------
     film : xarray.Dataset
         A ``film`` dataset.
+    part : float, optional
+        Share of the load that is much.
 
     Returns
     -------
     xarray.DataArray
-        Whether `surface_load_share` is above `LARGEST_SHARE`; False where it is not known.
+        Whether `surface_load_share` is above `part`; False where it is not known.
     """
-    return film.get("surface_load_share", xr.zeros_like(film["film_thickness"])) > LARGEST_SHARE
+    return film.get("surface_load_share", xr.zeros_like(film["film_thickness"])) > part
 
 
 def doubts(

@@ -14,6 +14,7 @@ from lube.contact.ensemble import windows_at_records
 from lube.contact.surface_strip import SURFACES
 from lube.ehl.film_formulas import formula
 from lube.grid.films import FilmGroups
+from lube.grid.load_sharing import MOST
 from lube.inference.record_curves import PROBABILITY, RecordCurves, realised_shares
 from lube.inference.surface_scatter import pair_correlation
 from lube.schema import LIMITS, values_with_limits, with_dims
@@ -153,7 +154,8 @@ def _lambda_ratios(comparison, factor):
     """
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         groups, names = FilmGroups.of(comparison), comparison["film_formula"]
-        oil = 1.0 - comparison.get("surface_load_share", xr.zeros_like(comparison["lambda_ratio"]))
+        share = comparison.get("surface_load_share", xr.zeros_like(comparison["lambda_ratio"]))
+        oil = (1.0 - share).where(share <= MOST)  # no balance was found of larger shares
         films = [
             _films(formula(name), replace(groups, load=groups.load * part), factor)
             for name, part in zip(names.values, oil, strict=True)

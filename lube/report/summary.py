@@ -83,6 +83,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     of_first = film.sel(first)
     lines = results["contact"] if "line" in study.contact_model else None
     contacts = {model: _of_model(model, study, results) for model in study.contact_model}
+    points = next(iter(contacts.values())).sel(first)["breakthrough_probability_mean"]
     return render(
         "findings.md",
         study=study,
@@ -92,7 +93,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         contacts={model: _contact(each.sel(first)) for model, each in contacts.items()},
         trends={model: _trends(each.sel(first)) for model, each in contacts.items()},
         spread=None if lines is None else _spread(film, lines, first),
-        held=_held(of_first, None if lines is None else lines.sel(first)),
+        held=_held(of_first, None if lines is None else lines.sel(first), points),
         deformed=_deformed(of_first, results.get("tail"), contacts),
         limits=model_limits,
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
@@ -208,8 +209,11 @@ def _deformed(film, tail, models):
     return {model: int(model_limits.deformed(film, surfaces[model]).sum()) for model in models}
 
 
-def _held(film, contact):
-    """Load on the asperities, and the numbers of points where the model does not hold."""
+def _held(film, contact, points):
+    """Load on the asperities, and the numbers of points where the model does not hold.
+
+    Like `points` of contact, they are counted at each slip.
+    """
     found = {"share": math.nan, "overloaded": 0, "merged": 0, "separated": 0}
     if contact is not None:
         touched = contact["breakthrough_probability_mean"] > 0.0
@@ -219,7 +223,9 @@ def _held(film, contact):
             "merged": int(model_limits.merged(contact, film).sum()),
             "separated": int((model_limits.separated(film) & touched).sum()),
         }
-    return found | {"rubbing": int(model_limits.rubbing(film).sum())}
+    parts = {"rubbing": model_limits.LARGEST_SHARE, "overrubbing": 1.0}
+    rubs = (model_limits.rubbing(film, part).broadcast_like(points) for part in parts.values())
+    return found | {name: int(flags.sum()) for name, flags in zip(parts, rubs, strict=True)}
 
 
 def _largest_excess(films):

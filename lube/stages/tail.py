@@ -118,11 +118,17 @@ def _on_surfaces(study, speed, areal):
     perimeter = study.line_spec.points[0] * study.line_spec.spacing
     table = {f"{name}{end}": areal[f"{name}{end}"] for name in PROBABILITIES for end in LIMITS}
     table |= surface_rates(areal, speed)
-    turn = perimeter / surface_speeds(speed, areal[_SLIP])[0]
+    turn = _turn(perimeter, speed, areal[_SLIP])
     table["breakthroughs_per_revolution"] = table["breakthrough_rate"] * turn
     areal = _in_pure_rolling(areal)
     passages = perimeter / areal["passage_width"]
     return xr.Dataset(table | _by_groups(areal, passages, perimeter / speed))
+
+
+def _turn(perimeter, speed, slip):
+    """Time of a revolution of the first roller; NaN if it stands still."""
+    first, _ = surface_speeds(speed, slip)
+    return perimeter / first.where(first > 0.0)
 
 
 def surface_rates(surfaces: xr.Dataset, speed: xr.DataArray) -> dict[str, xr.DataArray]:
@@ -274,7 +280,7 @@ def _table(pair, film, of_pairs, runs, slide_to_roll_ratio):
     rolling = of_pairs.map(_in_pure_rolling)
     in_window, rate = _in_time(pair, film, runs, slip)
     of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
-    turn = spec.points[0] * spec.spacing / surface_speeds(film["entrainment_speed"], slip)[0]
+    turn = _turn(spec.points[0] * spec.spacing, film["entrainment_speed"], slip)
     duration = in_window.mean("pair") / rate.mean("pair")
     if pair.gap.is_uniform:
         in_a_revolution = _in_a_revolution(spec, film, _in_pure_rolling(runs), rolling)

@@ -219,7 +219,7 @@ def _on_surface(variant, film, own, study, threads):
         found = {name: contact[name].transpose(*POINT_DIMS).values.ravel() for name in found}
     name = "breakthrough_probability"
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = found[name] / own[name]
+        ratio = np.where(own[name] > 0.0, found[name] / own[name], np.nan)
         half_widths = [
             (each[f"{name}_upper"] - each[f"{name}_lower"]) / (2.0 * each[name])
             for each in (found, own)

@@ -169,12 +169,12 @@ def _unseen_limit(windows):
 
 
 def breakthrough_limit(upper: Values, contact: Values, sampled: Values) -> Values:
-    """Upper limit of breakthrough, also where none of the sampled contacts has one.
+    """Upper limit of breakthrough, also where no or few of the sampled contacts have one.
 
     Parameters
     ----------
     upper : float or numpy.ndarray
-        Upper limit by the scatter, which is 0 there.
+        Upper limit by the scatter, which is 0 without any, and says little of a few.
     contact : float or numpy.ndarray
         Upper limit of the probability of geometric contact, or of the number of contacts.
     sampled : int or numpy.ndarray of int
@@ -183,14 +183,14 @@ def breakthrough_limit(upper: Values, contact: Values, sampled: Values) -> Value
     Returns
     -------
     numpy.ndarray
-        `upper`; where it is 0, `contact` times the limit for as many windows as `sampled`.
+        `upper`, but at least `contact` times the limit of what none of so many contacts shows.
 
     Examples
     --------
     >>> breakthrough_limit(np.array([0.0, 0.2]), np.array([0.1, 0.4]), 1000).round(4)
     array([0.0003, 0.2   ])
     """
-    return np.where(np.equal(upper, 0.0), contact * _unseen_limit(sampled), upper)
+    return np.maximum(upper, contact * _unseen_limit(sampled))
 
 
 def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array]:
@@ -219,7 +219,8 @@ def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array
     means = values.mean(axis=0), reference.mean(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         _, _, upper = mean_interval(1.0 + values / means[0] - reference / means[1])
-        ratio, half = means[0] / means[1], upper - 1.0  # of the logarithm
+        ratio = np.where(means[1] > 0.0, means[0] / means[1], np.nan)
+        half = upper - 1.0  # of the logarithm
     return ratio, ratio * np.exp(-half), ratio * np.exp(half)
 
 

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 MOST_NUMBERS = 10**9
 """Largest array, in numbers: 8 GB."""
 
+MOST_SAMPLES = 10**8
+"""Most samples of a turn at the points of the traces: the rig's records of it take some GB."""
+
 LEAST_POINTS, MOST_POINTS = 64, 2**26
 """Least and largest number of points around a roller; the latter are 5 nm apart on the paper's."""
 
@@ -48,7 +51,7 @@ def check_sizes(study: "Study") -> None:
         ("kept_realisations", pair * len(study.kept_realisations), "heights", MOST_NUMBERS),
         ("batch_size", pair * batch, "heights in a batch", MOST_NUMBERS),
         (rig_key, pair * len(study.rig_realisations), "heights of the rig", MOST_NUMBERS),
-        ("rig.sampling_rate", samples, "samples of the traces", MOST_NUMBERS),
+        ("rig.sampling_rate", samples, "samples of the traces", MOST_SAMPLES),
         ("operating_grid", combinations, "combinations in all realisations", MOST_NUMBERS),
         ("rig.pairs", tables * rig.pairs * FOLDED_NUMBERS, "folded samples", MOST_NUMBERS),
     ]

@@ -47,6 +47,17 @@ def test_the_load_that_asperities_carry_stays_that_of_the_studys_coefficient(stu
     assert (shared["lambda_ratio"] / alone["lambda_ratio"]).max() > 1.015
 
 
+def test_no_film_is_tried_where_asperities_and_oil_have_no_balance(study):
+    experiment = experiment_of([0.1, 0.2], [800.0, 1600.0], [100.0, 100.0], [60.0, 80.0])
+    oil = lubricant_table(study.lubricants, [60.0, 80.0])
+    table = film_at_records(experiment, oil, study.rollers, FORMULAS, inlet_meniscus=1e-3)
+    factor, share = xr.DataArray([1.0], dims="factor"), 0.0 * table["lambda_ratio"]
+    share[:, 0] = 3.0
+    found = _lambda_ratios(table.assign(surface_load_share=share), factor).isel(factor=0)
+    assert np.isnan(found[:, 0]).all()
+    np.testing.assert_allclose(found[:, 1], table["lambda_ratio"][:, 1], rtol=1e-5)
+
+
 def test_limits_from_four_realisations_hold_the_true_factor():
     """Windows and records are independent, so that shares are binomial."""
     generator, windows, trials = np.random.default_rng(0), 500, 300

@@ -243,15 +243,17 @@ def test_points_whose_surfaces_carry_much_of_the_load_are_counted(study, results
     share = (film["temperature"] == 80.0) * 0.3 + 0.0 * film["film_thickness"]
     text = findings(study, results | {"film": film.assign(surface_load_share=share)})
     assert "Asperities of the surfaces carry up to 30 % of the load, although the film" in text
-    assert "more than 10 % at 4 of the 16 operating points.\n" in text
+    assert "more than 10 % at 8 of the 16 operating points.\n" in text  # at either slip
     rough = findings(study, results | {"film": film.assign(surface_load_share=4.0 * share)})
-    assert "more than 10 % at 4 of the 16 operating points, more than all of it at 4.\n" in rough
+    assert "more than 10 % at 8 of the 16 operating points, more than all of it at 8.\n" in rough
     assert "% of the load, although the film is that of the whole load.\n" in text  # of the line
     shared = study.model_copy(update={"load_sharing": "iterated"})
     text = findings(shared, results | {"film": film.assign(surface_load_share=share)})
     assert "of the load; the films follow from the share that the surfaces carry" in text
-    assert "surfaces carry up to 30 % of the load, and the oil the rest" in text
+    assert "surfaces carry up to 30 % of the load; the film is that of the rest: more" in text
     assert "whole load" not in text
+    rough = findings(shared, results | {"film": film.assign(surface_load_share=4.0 * share)})
+    assert "more than all of it at 8, where asperities and oil have no balance.\n" in rough
 
 
 def test_contact_of_surfaces_is_stated_beside_that_of_lines_or_alone(study, results):

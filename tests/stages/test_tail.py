@@ -23,7 +23,7 @@ from lube.stages import (
     roughness_lines,
 )
 from lube.stages.areal import make as make_areal
-from lube.stages.tail import make
+from lube.stages.tail import _turn, make
 from lube.study.rollers import OwnRoughness
 from lube.surfaces.rare_contact import draw_pair
 
@@ -150,6 +150,16 @@ def test_probabilities_do_not_depend_on_slip_but_contacts_become_more_and_shorte
     assert np.all(duration.diff("slide_to_roll_ratio") < 0.0)
     present = rate * duration
     np.testing.assert_allclose(present, present.isel(slide_to_roll_ratio=[0] * len(RATIOS)))
+
+
+def test_a_roller_at_rest_makes_no_revolution():
+    speed, slip = (
+        xr.DataArray([0.5, 1.0], dims="speed"),
+        xr.DataArray([-2.0, 0.0, 2.0], dims="slip"),
+    )
+    turn = _turn(0.3, speed, slip).transpose("slip", "speed")
+    assert np.isnan(turn[0]).all()
+    np.testing.assert_allclose(turn[1:], [[0.6, 0.3], [0.3, 0.15]])
 
 
 def test_each_slip_has_the_film_that_heating_leaves_there(tail, few, make_tail):

@@ -100,7 +100,19 @@ def test_the_limit_of_breakthroughs_never_sampled_holds_in_95_of_100_cases(share
     is_below = (seen == 0) & (limit < contact * share)
     assert is_below.mean() < 0.055
     assert is_below.any() == (share > 6e-4)  # the limit is hardly above what it needs to be
-    assert np.all(limit[seen > 0] == contact * seen[seen > 0] / sampled)
+    none = breakthrough_limit(0.0, contact, sampled)
+    assert np.all(limit == np.maximum(contact * seen / sampled, none))
+
+
+def test_a_breakthrough_of_little_weight_says_no_more_than_none():
+    none, light = breakthrough_limit(np.array([0.0, 1e-6]), 0.5, 100)
+    assert none == light > 0.01
+
+
+def test_the_ratio_to_nothing_is_not_known():
+    with np.errstate(divide="raise", invalid="raise"):
+        found = ratio_interval(np.ones((3, 1)), np.zeros((3, 1)))
+    assert np.isnan(found).all()
 
 
 def test_interval_of_a_ratio_follows_from_the_error_of_its_logarithm():
