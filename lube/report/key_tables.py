@@ -33,9 +33,9 @@ def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def files_table() -> str:
-    """Write the table of the files of a study, each with its content, as Markdown."""
-    rows = [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in DATASETS]
+def files_table(datasets: Iterable[str] = DATASETS) -> str:
+    """Write the table of a study's files, by default of all, with their content, as Markdown."""
+    rows = [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in datasets]
     return markdown_table(("file", "content"), rows)
 
 

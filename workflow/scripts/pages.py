@@ -32,7 +32,7 @@ parts = {
     "facts": to_html(f"{facts(study, results['lubricant'])}\n\n{made(study)}"),
     "findings": to_html(findings(study, results)),
     "limits": to_html(limits),
-    "files": to_html(files_table()),
+    "files": to_html(files_table(study.datasets)),
     "pipeline": to_html(f"```{drawing}```"),
     "configuration": render("page.html", title="Configuration", body=configuration(study, written)),
     "assumptions": render("page.html", title=title, body=to_html(assumptions)),
