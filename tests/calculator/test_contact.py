@@ -160,7 +160,7 @@ def test_the_most_complete_model_is_asked_for_by_name(rollers, oil):
 
 
 def test_what_cannot_touch_is_refused_before_films_are_computed(oil, monkeypatch):
-    monkeypatch.setattr("lube.calculator.film.film_at", None)
+    monkeypatch.setattr("lube.calculator.film.film_with_oil", None)
     fine = lube.Rollers("10 mm", "0.1 um", shortest_wavelength="1 um")
     for answer, *given in (
         (lube.contact_probability, fine, oil, *POINT.values()),
