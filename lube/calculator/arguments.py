@@ -40,8 +40,9 @@ def checked(function: _Function) -> _Function:
 
     @functools.wraps(function)
     def call(*args, **kwargs):
-        for name in (name for name in kwargs if name not in parameters):
-            raise StudyError(f"{owner}: {name}: unknown argument, {_meant(name, parameters)}")
+        if unknown := [name for name in kwargs if name not in parameters]:
+            meant = _meant(unknown[0], parameters)
+            raise StudyError(f"{owner}: {unknown[0]}: unknown argument, {meant}")
         try:
             given = signature.bind(*args, **kwargs).arguments
         except TypeError as error:

@@ -317,7 +317,7 @@ def solve(
     if meniscus is not None:
         film = float(film * starvation_factor(film, meniscus))
     nodes = first_mesh(film, inlet(film - _HERTZ_DEFLECTION, film))
-    reach = min(breadth(film), -nodes[0])
+    reach = min(breadth(film), -nodes[0])  # no pressure before the oil begins
     pressure = np.sqrt(np.maximum(1.0 - (nodes / reach) ** 2, 0.0))
     profile = _settle(contact, nodes, pressure, film, 0)
     for _ in range(_FITTINGS):

@@ -160,9 +160,9 @@ def _beyond_model(film, rollers, of_lines):
 
 def _unknown(film):
     """Remark on operating points whose film is not known, with their number."""
-    parts = [film[name] for name in ("film_thickness", "film_profile") if name in film]
-    unknown = sum(part.isnull() for part in parts) > 0
-    unknown = unknown.any([dim for dim in unknown.dims if dim == "film_position"])
+    unknown = film["film_thickness"].isnull()
+    if "film_profile" in film:
+        unknown = unknown | film["film_profile"].isnull().any("film_position")
     return {
         f"film: unknown at {int(unknown.sum())} of {unknown.size} operating points, and so is "
         "contact: Reynolds' equation was not solved there, or the heating at the inlet is beyond "
