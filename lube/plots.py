@@ -416,6 +416,28 @@ def around(marker: str) -> dict[str, Any]:
     return {"linestyle": "none", "marker": marker} | look
 
 
+def lone_points(y: np.ndarray) -> np.ndarray:
+    """Keep the points of a curve that no line reaches, as no neighbour is known.
+
+    Parameters
+    ----------
+    y : array_like
+        One-dimensional.
+
+    Returns
+    -------
+    numpy.ndarray
+        The values, NaN where a neighbour is not NaN.
+
+    Examples
+    --------
+    >>> lone_points([1.0, 2.0, np.nan, 3.0, np.nan]).tolist()
+    [nan, nan, nan, 3.0, nan]
+    """
+    unknown = np.pad(np.isnan(y), 1, constant_values=True)
+    return np.where(unknown[:-2] & unknown[2:], y, np.nan)
+
+
 def interval_bars(
     axes: Axes, x: np.ndarray, mean: np.ndarray, lower: np.ndarray, upper: np.ndarray, **style
 ) -> None:

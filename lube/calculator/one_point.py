@@ -141,7 +141,7 @@ def profile(
     '1.02 um, least 0.85 um'
     """
     one = _one_point(rollers, oil, force, speed, temperature)
-    table = film_profile_table(*one, with_whole_pressure=True)
+    table = film_profile_table(*one)
     found = table.isel(dict.fromkeys(POINT_DIMS, 0))
     if np.isnan(found["central_film"]):
         raise RangeError(f"the film at {force}, {speed} and {temperature} did not converge")

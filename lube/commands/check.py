@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 import pandas as pd
+import xarray as xr
 
 from lube.commands.run import repository
 from lube.errors import LubeError, StudyError, located
@@ -74,10 +75,12 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
 
 
 def _film(study):
-    """Film table by the study's first formula, without the oil's answer to lines."""
+    """Film table by the study's first formula at every slip, without the oil's answer to lines."""
     some = {"film_formulas": study.film_formulas[:1], "roughness_deformation": "none"}
     oils = lubricant_table(study.lubricants, study.operating_grid.temperature)
-    return make_film(study.model_copy(update=some), {"lubricant": oils})
+    film = make_film(study.model_copy(update=some), {"lubricant": oils})
+    slips = xr.DataArray(list(study.slips), dims="slide_to_roll_ratio")
+    return film.map(lambda variable: variable.broadcast_like(slips))
 
 
 def _own_remarks(path, study, changes):

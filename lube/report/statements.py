@@ -55,6 +55,8 @@ def assumptions_of(study: Study, paper: Study, text: str) -> str:
 
     def shared(row):
         keys = re.findall(r"`([\w.]+)`", row.rpartition(" | ")[2])
+        if not study.has("experiment") and keys[0].startswith(("experiment", "rig")):
+            return False
         return all(at_key(values[0], key) == at_key(values[1], key) for key in keys)
 
     *head, body = table.strip().split("\n", 2)

@@ -31,7 +31,6 @@ def film_profile_table(
     force: npt.ArrayLike,
     speed: npt.ArrayLike,
     inlet_meniscus: float | None = None,
-    with_whole_pressure: bool = False,
 ) -> xr.Dataset:
     """Compute pressure and film across the contact at every operating point.
 
@@ -39,14 +38,12 @@ def film_profile_table(
     ----------
     lubricant, rollers, force, speed, inlet_meniscus
         As in `lube.stages.film.film_table`.
-    with_whole_pressure : bool, optional
-        Whether the positions reach as far as the pressure does; by default they reach as far as
-        roughness may touch.
 
     Returns
     -------
     xarray.Dataset
-        The ``film_profile`` file of `lube.schema`. Where the film did not converge, the values are
+        The ``film_profile`` file of `lube.schema`. Its positions reach as far as the pressure does
+        and as far as roughness may touch. Where the film did not converge, the values are
         NaN and the log says so.
     """
     axes = xr.Dataset(coords={"force": np.asarray(force, float), "speed": np.asarray(speed, float)})
@@ -55,8 +52,7 @@ def film_profile_table(
         groups = FilmGroups.at(lubricant, rollers, axes["force"], contact, inlet_meniscus)
         solved = groups.profiles.transpose(*POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
-    reach = groups.of_profiles("pressure_reach").max().item() if with_whole_pressure else 0.0
-    positions = film_positions(contact, reach=reach)
+    positions = film_positions(contact, reach=groups.of_profiles("pressure_reach").max().item())
     film = over_positions(solved, FilmProfile.film_at, positions)
     pressure = over_positions(solved, FilmProfile.pressure_at, positions)
     table["film"] = film * rollers.reduced_radius

@@ -25,7 +25,7 @@ def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
 def test_a_profile_is_that_of_the_film_profile_stage(rollers, oil, busy):
     found = lube.profile(rollers, oil, **POINT)
     table = lubricant_table([oil.record], [60.0])
-    stage = film_profile_table(table, rollers.pair, [400.0], [100.0], with_whole_pressure=True)
+    stage = film_profile_table(table, rollers.pair, [400.0], [100.0])
     stage = stage.squeeze()
     for name, of_stage, factor, units in (
         ("film", "film", 1e6, "um"),

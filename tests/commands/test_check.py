@@ -49,6 +49,16 @@ def lines_of(path, *changes):
     return {line[:18].strip(): line[18:] for line in summary}, remarks
 
 
+def test_operating_points_are_counted_at_each_slip():
+    lines, _ = lines_of(CONFIG / "slip.yaml")
+    assert lines["operating points"].startswith("40 = 2 forces × 2 temperatures × 10 ")
+    assert "of 40 outside" in lines["film"]
+    _, remarks = lines_of(
+        CONFIG / "slip.yaml", "name=rough", "rollers={first: {rms_roughness: 1 um}}"
+    )
+    assert any(" of 40 operating points" in one for one in remarks)
+
+
 def test_what_an_engineer_looks_at_first_is_said():
     lines, _ = lines_of(PAPER)
     assert lines["Hertz pressure"] == "121 MPa to 485 MPa"

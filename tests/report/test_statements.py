@@ -40,6 +40,13 @@ def test_another_study_keeps_what_it_shares():
     assert "steel" in left_open(grid) and "125 points" not in grid
 
 
+def test_a_study_without_records_says_nothing_of_a_rig():
+    paper, own = load_study(PAPER), load_study(PAPER, {"name": "mine", "resistivity": "insulator"})
+    lost = {"resistivity", "the measured values", "the rig's circuit, amplifier, sampling"}
+    kept = assumptions_of(own, paper, DOCS["assumptions"])
+    assert set(left_open(DOCS["assumptions"])) - set(left_open(kept)) == lost
+
+
 def test_what_is_said_of_the_model_is_said_of_every_study():
     paper, smoke = load_study(PAPER), load_study(CONFIG / "smoke.yaml")
     for name, reduce in (("limits", limits_of), ("assumptions", assumptions_of)):
