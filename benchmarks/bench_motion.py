@@ -155,7 +155,8 @@ def counted(motion, spec, limits, seed):
     """Contacts in the strip and those that appear, then the same of broken layers."""
     spacing = motion.surface.spacing[1]
     films = motion.strip.films(spacing) / spec.height_step
-    sharp = [motion.strip.breaking_curvatures(spacing, each) / spec.height_step for each in limits]
+    columns = motion.strip.columns(spacing)
+    sharp = [motion.strip.breaking_curvatures(columns, each) / spec.height_step for each in limits]
     touching, broken, numbers = [], [[] for _ in limits], np.zeros(1 + len(limits))
     for heights, curved in motion.steps(seed):
         labels, summits = summits_in(heights - films, motion.surface.diagonal)

@@ -67,8 +67,7 @@ class Filtered:
 
     def __init__(self, surface, strip, film):
         self._surface, half_width = surface, film["contact_half_width"].item()
-        column = np.arange(strip.films(surface.spacing[1]).size)
-        position = (strip.begin + surface.spacing[1] * (column + 0.5)) / half_width
+        position = strip.columns(surface.spacing[1]) / half_width
         rows, columns = surface.coarse
         numbers = np.fft.fftfreq(rows, 1.0 / rows), np.arange(columns // 2 + 1)
         down, along = np.meshgrid(*numbers, indexing="ij")

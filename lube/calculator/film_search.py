@@ -1,6 +1,8 @@
 """Search for the film that keeps contact below a share of time."""
 
+import logging
 from collections.abc import Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -65,6 +67,18 @@ def check_known(is_known: bool) -> None:
         raise RangeError("the film did not converge at the conditions tried, need others")
 
 
+@contextmanager
+def _unreported():
+    """Log no films that did not converge: most levels tried are far from the one that is sought."""
+    log = logging.getLogger("lube")
+    level = log.level
+    log.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        log.setLevel(level)
+
+
 class FilmSearch:
     """Search for the films at which the probability of contact equals a share of time.
 
@@ -122,7 +136,8 @@ class FilmSearch:
             Film table at the film found, or the one next to it that was tried.
         """
         plain = replace(self._choices, gap=PLAIN)
-        whole = table(levels, plain)
+        with _unreported():
+            whole = table(levels, plain)
         for name, size in whole["film_thickness"].sizes.items():
             if size != levels.size:
                 raise StudyError(f"{name}: got {size} values, need one")

@@ -20,7 +20,7 @@ from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import sample_size
 from lube.contact.surface_strip import SURFACES, surface_contact
 from lube.contact.windows import ContactWindows
-from lube.errors import StudyError, right_one
+from lube.errors import StudyError, right_one, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.grid.operating_points import surface_speeds
@@ -31,6 +31,9 @@ from lube.rig.simulator import Revolution
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.study.uncertainty import CHOICES
 from lube.surfaces.synthetic import draw_realisation
+
+THRESHOLD = "100 ohm"
+"""Resistance below which a rig shows contact, by default."""
 
 
 @checked
@@ -51,7 +54,7 @@ def plan(
     contact_model: types.ContactModel = "line",
     turns: float | Sequence[float] = 1.0,
     rig: KnownRig | None = None,
-    threshold: types.Amount = "100 ohm",
+    threshold: types.Amount | None = None,
     realisations: int = REALISATIONS,
     seed: int = SEED,
     bands: bool | Mapping[str, Any] = False,
@@ -80,8 +83,8 @@ def plan(
         added. By default the share is read exactly. The rig runs with lines, so its error of
         surfaces follows from theirs.
     threshold : str, sequence of str or tuple, optional
-        Resistance below which that rig shows contact. An ECR meter shows the mean voltage, which
-        depends on no threshold.
+        Resistance below which that rig shows contact, by default 100 ohm. An ECR meter shows the
+        mean voltage, which depends on no threshold.
     bands : bool or dict, optional
         Whether quantities that are not known exactly widen the intervals; ranges are as in
         `lube.contact_probability`, but choices of the model do not count. The film is inferred
@@ -111,7 +114,9 @@ def plan(
     True
     """
     turns = amount("turns", (turns, "1"), "1", above=0.0)
-    thresholds = amount("threshold", threshold, "ohm", above=0.0)
+    if rig is None and threshold is not None:
+        raise StudyError(f"threshold: got {shown(threshold)} without a rig, need rig, too")
+    thresholds = amount("threshold", threshold or THRESHOLD, "ohm", above=0.0)
     model = one_name("contact_model", contact_model)
     models = [model] if rig is None else list(dict.fromkeys((model, "line")))
     _check_ridges(rig, model, rollers)

@@ -81,23 +81,37 @@ class StripFilm:
 
         return replace(self, thickness=thickness)
 
+    def columns(self, spacing: float) -> Array:
+        """Positions of the columns of a grid at which contacts are looked for, m.
+
+        Edges are at columns, so that what covers a column is in the strip.
+        """
+        number = max(round(self.width / spacing), 1) + self.has_edges
+        middle = self.begin + 0.5 * self.width
+        return middle + spacing * (np.arange(number) - 0.5 * (number - 1))
+
+    @property
+    def middles(self) -> Array:
+        """Positions in the middle of `COLUMNS` even parts of the strip, m."""
+        return self.begin + self.width / COLUMNS * (np.arange(COLUMNS) + 0.5)
+
     def films(self, spacing: float) -> Array:
         """Film at the columns of a grid, m."""
-        return self.thickness(self._columns(spacing))
+        return self.thickness(self.columns(spacing))
 
-    def breaking_curvatures(self, spacing: float, sharp: float) -> Array:
-        """Mean curvature of the surface at which a summit breaks its layer, at each column, 1/m.
+    def breaking_curvatures(self, position: Array, sharp: float) -> Array:
+        """Mean curvature of the surface at which a summit breaks its layer, at positions, 1/m.
 
         The mean curvature of the overlap is then `sharp`. Half of the film's second derivative
         contributes to it.
         """
-        return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
+        return sharp - 0.5 * self.thickness(position, 2)
 
     def answered(self, surface: Surface) -> AnsweredStrip | None:
         """Find what the oil adds to a surface."""
         if self.answers is None or not any(one.shapes.size for one in self.answers):
             return None
-        return AnsweredStrip(self.answers, surface, self._columns(surface.spacing[1]))
+        return AnsweredStrip(self.answers, surface, self.columns(surface.spacing[1]))
 
     def contacts(
         self, spec: LineSpecLike, length: float, slide_to_roll_ratio: float = 0.0
@@ -124,10 +138,10 @@ class StripFilm:
         square, along = moments[:, :1, :1], moments[:, 0, 1:]
         # The rms height changes along the strip, too.
         changes = (moments[:, 1:, 1:] - along[:, :, None] * along[:, None] / square) / square
-        spacing = self.width / COLUMNS
-        level = self.films(spacing) / np.sqrt(moments[:, 0, 0])
+        level = self.thickness(self.middles) / np.sqrt(moments[:, 0, 0])
         level = level - max(level.min() - HIGHEST, 0.0)
-        return excursions.passing_contacts(level, changes, length, spacing, self.has_edges)
+        apart = self.width / COLUMNS
+        return excursions.passing_contacts(level, changes, length, apart, self.has_edges)
 
     def levels(self, spec: LineSpecLike) -> Array:
         """Film over the rms height in the gap, at `COLUMNS` columns.
@@ -138,7 +152,7 @@ class StripFilm:
             As in `contacts`.
         """
         square = self._moments(spec)[..., 0, 0].sum(axis=0)
-        return self.films(self.width / COLUMNS) / np.sqrt(square)
+        return self.thickness(self.middles) / np.sqrt(square)
 
     def expected(self, spec: LineSpecLike, length: float, sharp: float) -> Pair:
         """Find the numbers of contacts, and of breakthroughs, that theory expects in the strip.
@@ -172,11 +186,10 @@ class StripFilm:
 
     def _summits(self, spec, sharp, density):
         """Films, moments and curvatures of summits at columns, and the columns' weights."""
-        spacing = self.width / COLUMNS
-        films, sharp = self.films(spacing), self.breaking_curvatures(spacing, sharp)
+        films, sharp = self.thickness(self.middles), self.breaking_curvatures(self.middles, sharp)
         moments, curvatures = surface_moments(spec), curvature_moments(spec)
         if self.answers:
-            products = sum(self._of_each(summit_moments, spec, self._columns(spacing))).T
+            products = sum(self._of_each(summit_moments, spec, self.middles)).T
             height, mean, half, mixed = products[0]
             moments = excursions.SurfaceMoments(
                 height, mean + half, mean - half, mixed, 4.0 * products[1, 1]
@@ -223,7 +236,7 @@ class StripFilm:
         share = summits.sharp_surface_summit_share(*known)
         answered = UNCHANGED
         if self.answers:
-            answered = self._of_each(waves_in_gap, spec, self._columns(self.width / COLUMNS))
+            answered = self._of_each(waves_in_gap, spec, self.middles)
         motion = summit_motion(spec, slide_to_roll_ratio, answered)
         more = summits.sharpening_summits(*known, motion)
         share, more = (np.average(each, weights=weights) for each in (share, more))
@@ -272,7 +285,7 @@ class StripFilm:
     @functools.lru_cache(maxsize=1)  # noqa: B019 - of one strip at a time
     def _moments(self, spec):
         """Compute the `height_moments` in the gap, at `COLUMNS` columns."""
-        return self._moments_at(spec, self._columns(self.width / COLUMNS))
+        return self._moments_at(spec, self.middles)
 
     def _moments_at(self, spec, position):
         if not self.answers:
@@ -283,9 +296,6 @@ class StripFilm:
         """Moments of either surface in the gap."""
         each = enumerate(self.answers)
         return [moments_of(surface_waves(spec, one), answer, position) for one, answer in each]
-
-    def _columns(self, spacing):
-        return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
 
 
 @functools.lru_cache(maxsize=1)

@@ -99,17 +99,23 @@ def sampled_strips(
     sampled = []
     each = zip(strips, sharp, counts.tolist(), is_certain.tolist(), answered, strict=True)
     for strip, own, count, certain, oil in each:
-        film, limit = strip.films(along) / step, strip.breaking_curvatures(along, own) / step
+        limit = strip.breaking_curvatures(strip.columns(along), own) / step
+        film = strip.films(along) / step
         rms = np.broadcast_to(surface.rms * oil.rms if oil else surface.rms, film.shape)
         sampled.append(_SampledStrip(film, limit, rms, count, certain, oil))
     covariances = tuple(surface.covariances(*rows, max(one.film.size for one in sampled)))
     on_one_surface = partial(_on_one_surface, surface, covariances, sampled, reach)
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
-    return _with_limits(first, numbers, max(int(pair.length / down), 1), along, counts * len(seeds))
+    # Columns at the edges stand for half as much of the strip.
+    columns = zip(strips, sampled, strict=True)
+    apart = np.array(
+        [one.width / own.film.size if one.has_edges else along for one, own in columns]
+    )
+    return _with_limits(first, numbers, max(int(pair.length / down), 1), apart, counts * len(seeds))
 
 
-def _with_limits(first, numbers, rows, spacing, sampled):
+def _with_limits(first, numbers, rows, widths, sampled):
     """Variables and their limits from all surfaces, for a strip of so many rows."""
     results = {}
     for which, (name, of_contacts) in enumerate(COUNTS.items()):
@@ -117,7 +123,7 @@ def _with_limits(first, numbers, rows, spacing, sampled):
         limits = jackknife_interval(first[:, :, which], partial(_up_to_certain, rows=rows))
         results |= values_with_limits(name, [-np.expm1(-each) for each in limits])
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
-    in_contact, broken = (mean_interval(spacing * numbers[:, :, which]) for which in (2, 3))
+    in_contact, broken = (mean_interval(widths * numbers[:, :, which]) for which in (2, 3))
     results |= values_with_limits(RATIO, broken)  # m, of the strip's width
     contacts = results["contacts_upper"]
     for name in ("breakthroughs_upper", "breakthrough_probability_upper", f"{RATIO}_upper"):

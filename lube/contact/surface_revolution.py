@@ -19,7 +19,6 @@ import scipy
 import xarray as xr
 
 from lube.contact.rough_pair import RoughPair
-from lube.contact.strip_film import COLUMNS
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import mean_breaking_curvature, strip_films
 from lube.ehl.line_contact import one_blas_thread
@@ -87,8 +86,11 @@ def revolution_contact(
 
 def _passages(pair, film, known):
     """Surface of which pieces are drawn, and their passages through known strips, by point."""
-    widest = max(strip.width for strip in known.values())
-    surface = rough_surface(pair.spec, widest, multiple=2**COARSEST if pair.gap.is_answered else 1)
+    widths = [strip.width for strip in known.values()]
+    multiple = 2**COARSEST if pair.gap.is_answered else 1
+    # The grid resolves the narrowest strip.
+    resolved = math.inf, min(widths) / 8.0
+    surface = rough_surface(pair.spec, max(widths), resolved, multiple=multiple)
     sharp = mean_breaking_curvature(pair, film)
     with one_blas_thread():
         passages = {point: _Passage(strip, pair, surface, sharp) for point, strip in known.items()}
@@ -110,7 +112,7 @@ class _Passage:
     def __init__(self, strip, pair, surface, sharp):
         spec, along = pair.spec, surface.spacing[1]
         self._film = strip.films(along) / spec.height_step
-        self._sharp = strip.breaking_curvatures(along, sharp) / spec.height_step
+        self._sharp = strip.breaking_curvatures(strip.columns(along), sharp) / spec.height_step
         self._lowest = _lowest(strip, spec, pair.length, sharp) / spec.height_step
         self._has_edges, self._answer = strip.has_edges, strip.answered(surface)
         self.lowest_drawn = self._lowest
@@ -169,8 +171,7 @@ def _most_added(spec, strip):
     What is high in the gap is nearly always higher as drawn, so that few summits add more.
     """
     answer, square = strip.answers[0], 0.0
-    position = np.linspace(strip.begin, strip.begin + strip.width, COLUMNS)
-    shapes = answer.at(position / answer.half_width)
+    shapes = answer.at(strip.middles / answer.half_width)
     for roller in range(2):
         along, across, power = surface_waves(spec, roller)
         by_oil = np.einsum("nm,wm->nw", shapes, answer.filters_at(along, across))
@@ -186,4 +187,4 @@ def _lowest(strip, spec, length, sharp):
         return drawn.thicker(times).expected(spec, length, sharp)[1] - ENOUGH
 
     times = scipy.optimize.brentq(too_many, 1.0, 40.0, xtol=0.01) if too_many(1.0) > 0.0 else 1.0
-    return times * strip.films(strip.width / COLUMNS).min()
+    return times * strip.thickness(strip.middles).min()

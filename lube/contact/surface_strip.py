@@ -22,7 +22,7 @@ import xarray as xr
 from lube.contact import strip_sampling
 from lube.contact.pair_scatter import RecurringContacts, pair_deviation, turn_ratio
 from lube.contact.rough_pair import RoughPair
-from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments
+from lube.contact.strip_film import StripFilm, surface_moments
 from lube.contact.strip_sampling import COUNTS, RATIO
 from lube.contact.surface_answers import COARSEST, SurfaceAnswer
 from lube.contact.waves import answers_at
@@ -253,7 +253,8 @@ def _on_alike_grids(spec, strips):
 def smallest_contacts(spec: LineSpecLike, strips: Sequence[StripFilm]) -> Array:
     """Find the sizes of the smallest contacts in some strips along the rollers and along rolling.
 
-    They are those of parabolas as high as the mean summit above the film, rounded down to powers of
+    They are those of parabolas as high as the mean summit above the film, and an eighth of the
+    strip's width at most, which the grid has to resolve, too. They are rounded down to powers of
     the root of two, so that strips share surfaces.
 
     Parameters
@@ -269,7 +270,8 @@ def smallest_contacts(spec: LineSpecLike, strips: Sequence[StripFilm]) -> Array:
         Sizes, m.
     """
     moments = surface_moments(spec)
-    films = np.array([strip.films(strip.width / COLUMNS).min() for strip in strips])
+    films = np.array([strip.thickness(strip.middles).min() for strip in strips])
     slopes = np.array([moments.across, moments.along])
     smallest = np.sqrt(4.0 / slopes) * moments.height / films[:, None]
+    smallest[:, 1] = np.minimum(smallest[:, 1], [strip.width / 8.0 for strip in strips])
     return 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))

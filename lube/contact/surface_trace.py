@@ -97,7 +97,7 @@ class _Passage:
     def __init__(self, strip, pair, surface, sharp):
         along, step = surface.spacing[1], pair.spec.height_step
         self._film = (strip.films(along) / step).astype(np.float32)
-        self._sharp = strip.breaking_curvatures(along, sharp) / step
+        self._sharp = strip.breaking_curvatures(strip.columns(along), sharp) / step
         self._surface, self._answer = surface, strip.answered(surface)
         self._shift = self._answer.shift if self._answer else 0
 

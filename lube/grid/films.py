@@ -14,7 +14,7 @@ from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
 from lube.grid.film_profiles import film_positions, over_positions
 from lube.grid.film_responses import surface_responses, wave_responses
-from lube.grid.load_sharing import share_load, surface_load_share
+from lube.grid.load_sharing import MOST, share_load, surface_load_share
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import heating_factor, thermal_loading
 from lube.physics.regimes import asymptotic_gap, regime
@@ -188,7 +188,9 @@ def _with_shared_load(table, films_at, groups, rough_surfaces, with_shape):
         "lambda_ratio": film / table["composite_rms_roughness"],
     }
     if groups.meniscus is not None:
-        found["starvation_factor"] = film / films_at(replace(groups, meniscus=None), 1.0 - share)
+        # Where no balance was found, the film is that of the least load on the oil.
+        flooded = films_at(replace(groups, meniscus=None), 1.0 - share.clip(max=MOST))
+        found["starvation_factor"] = film / flooded
     return table.assign(found)
 
 

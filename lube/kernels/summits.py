@@ -182,7 +182,7 @@ def passing_contacts(
     shapes : numpy.ndarray
         Functions of the column of the strip, shape (W, M).
     has_edges : bool
-        Whether contacts are cut where the strip ends.
+        Whether contacts are cut where the strip ends, at its first and its last column.
     first_step : int
         Step of the first element of `contact`.
     contact : numpy.ndarray
@@ -192,11 +192,11 @@ def passing_contacts(
     strip = film, shapes, has_edges
     count, width = summits.column.size, film.size
     columns, areas, sums = np.empty(count, np.int32), np.zeros(count), np.zeros(count)
-    margin = 0.5
+    margin = 0.0
     if has_edges:
         for number in range(count):
             overlap = max(summits.height[number] - film.min(), 0.0)
-            margin = max(margin, 0.5 + math.sqrt(summits.reach[number] * overlap))
+            margin = max(margin, math.sqrt(summits.reach[number] * overlap))
     begin = end = count
     for step in range(contact.size):
         # The lower a column of the surface, the later it comes to the strip.
@@ -241,8 +241,8 @@ def _touching(summits, added, strip, moved, number, column):
     film, shapes, has_edges = strip
     here, width = summits.column[number] + moved, film.size
     overlap = summits.height[number] - film[column] + _by_oil(added[0], shapes, number, column)
-    inside = min(here + 0.5, width - 0.5 - here)
-    if overlap <= 0.0 or (inside <= 0.0 and not has_edges):
+    inside = min(here, width - 1 - here)
+    if overlap <= 0.0 or (inside < 0.0 and not has_edges):
         return 0.0
     area = summits.area[number] * overlap
     if has_edges:

@@ -111,13 +111,13 @@ def test_a_trace_needs_a_contact_that_the_grid_resolves(rollers, oil):
 
 @pytest.mark.parametrize("model", ["line", "surface"])
 def test_a_trace_has_the_remarks_of_the_probability(oil, model):
-    rough = lube.Rollers("5 mm", "3 um", points=20_000)
-    choices = {"contact_model": model, "seed": 4}
-    found = lube.trace(rough, oil, **POINT, **choices).attrs["remarks"]
+    rough = lube.Rollers("5 mm", "3 um", length="1 mm", points=20_000)
+    point, choices = POINT | {"force": "40 N"}, {"contact_model": model, "seed": 4}
+    found = lube.trace(rough, oil, **point, **choices).attrs["remarks"]
     assert f"the {model}" in found and "asperities carry more than a tenth" in found
     assert model == "line" or "line" not in found
     with on_few_surfaces(4):
-        same = lube.contact_probability(rough, oil, **POINT, **choices, realisations=1)
+        same = lube.contact_probability(rough, oil, **point, **choices, realisations=1)
     assert found == same.attrs["remarks"]
 
 

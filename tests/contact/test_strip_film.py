@@ -94,7 +94,7 @@ def answered_shares(spec, surface, strip, generator):
     """Share of a revolution in which each pair touches that the oil answers; see `rollers`."""
     answer, waves = strip.answers[0], surface.draw(generator)[2]
     films = (strip.films(surface.spacing[1]) / spec.height_step).astype(np.float32)
-    position = strip.begin + surface.spacing[1] * (np.arange(films.size) + 0.5)
+    position = strip.columns(surface.spacing[1])
     spacing = np.divide(surface.sides, surface.coarse)
     down, along = np.meshgrid(
         2.0 * np.pi * np.fft.fftfreq(surface.coarse[0], spacing[0]),
@@ -314,8 +314,9 @@ def test_a_thicker_film_is_on_the_same_strip(spec):
         thicker = strip.thicker(1.1)
         assert (thicker.begin, thicker.width) == (strip.begin, strip.width)
         np.testing.assert_allclose(thicker.films(1e-6), 1.1 * strip.films(1e-6), rtol=1e-12)
-        rise = 0.0 - strip.breaking_curvatures(1e-6, 0.0)
-        np.testing.assert_allclose(0.0 - thicker.breaking_curvatures(1e-6, 0.0), 1.1 * rise)
+        position = strip.columns(1e-6)
+        rise = 0.0 - strip.breaking_curvatures(position, 0.0)
+        np.testing.assert_allclose(0.0 - thicker.breaking_curvatures(position, 0.0), 1.1 * rise)
         np.testing.assert_array_equal(strip.thicker(1.0).films(1e-6), strip.films(1e-6))
 
 
@@ -343,7 +344,7 @@ def test_the_roughness_in_the_gap_is_that_of_drawn_surfaces_as_the_oil_answers_t
             heights = surfaces.heights(waves)
             for column in range(0, surface.points[1] - columns, surface.points[1] // 8):
                 square[number] += np.mean(heights(column, columns) ** 2, axis=0)
-    position = strip.begin + surface.spacing[1] * (np.arange(columns) + 0.5)
+    position = strip.columns(surface.spacing[1])
     inside = np.abs(position) < half_width
     mean, rms = strip.gap(spec, half_width)
     across = np.linspace(-half_width, half_width, rms.size)

@@ -108,6 +108,9 @@ def test_a_film_that_is_not_known_has_no_contact_that_is(spec, film, study):
 def test_ridges_as_long_as_the_rollers_touch_as_often_as_their_line(make_spec, film, study):
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[2, 4])
     spec = make_spec(50_000, lay_ratio=700.0, lay_angle=90.0)
+    # Whole grid points, or the lines' windows would be narrower.
+    points = np.rint(few["contact_half_width"] / spec.spacing)
+    few["contact_half_width"] = (1.0 + 1e-9) * spec.spacing * points
     pair = RoughPair(spec, 1e-3, study.boundary_layer, SEED)
     found, of_lines = surface_contact(pair, few), pair_probabilities(pair, few, 0.0)
     name = "geometric_contact_probability"
@@ -183,7 +186,7 @@ def compare(spec, surfaces, surface, film, count):
     """
     curvature = 2.0 * np.std(surface.draw(np.random.default_rng(1))[1]) * spec.height_step
     films = film.films(surface.spacing[1]) / spec.height_step
-    sharp = film.breaking_curvatures(surface.spacing[1], curvature) / spec.height_step
+    sharp = film.breaking_curvatures(film.columns(surface.spacing[1]), curvature) / spec.height_step
     rng = np.random.default_rng(8)
     counted = np.array([searched(surfaces, surface, films, sharp, rng) for _ in range(count)])
     pair = RoughPair(spec, (ROWS + 0.5) * surface.spacing[0], layer=None, seed=SEED)
@@ -305,7 +308,8 @@ def test_of_surfaces_that_the_oil_answers_as_many_layers_break_as_expected(
     strip, film = answered_strip(study, spec, film_shape, slip, 2.2)
     filtered, spacing = Filtered(surface, strip, film), surface.spacing[1]
     films = strip.films(spacing) / spec.height_step
-    bend, rng, found = 0.0 - strip.breaking_curvatures(spacing, 0.0), np.random.default_rng(3), []
+    bend = 0.0 - strip.breaking_curvatures(strip.columns(spacing), 0.0)
+    rng, found = np.random.default_rng(3), []
     for _ in range(20):
         waves = drawn_waves(surface, rng)
         across, drawn = (each.heights(waves) for each in (filtered, Unchanged(surface)))

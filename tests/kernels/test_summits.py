@@ -117,8 +117,9 @@ def test_an_edge_cuts_the_area_of_a_contact():
     contact = passed(summits([20.0], [5.0]), np.full(10, 4.0), has_edges=True)
     whole = contact.max()
     assert whole == pytest.approx(diameter(2.0))
-    # Half a length of 2 columns: cut up to 2 columns inside of the edges at -0.5 and 9.5.
-    inside = np.minimum(np.arange(60) - 40 + 20 + 20.5 - 20, 9.5 - (np.arange(60) - 20)) / 2.0
+    # Half a length of 2 columns: cut up to 2 columns inside of the edges at columns 0 and 9.
+    column = np.arange(60.0) - 20.0
+    inside = np.minimum(column, 9.0 - column) / 2.0
     inside = np.clip(inside, -1.0, 1.0)
     part = (np.arccos(-inside) + inside * np.sqrt(1.0 - inside**2)) / np.pi
     np.testing.assert_allclose(contact, whole * np.sqrt(part), atol=1e-12)
