@@ -270,8 +270,11 @@ def smallest_contacts(spec: LineSpecLike, strips: Sequence[StripFilm]) -> Array:
         Sizes, m.
     """
     moments = surface_moments(spec)
-    films = np.array([strip.thickness(strip.middles).min() for strip in strips])
-    slopes = np.array([moments.across, moments.along])
-    smallest = np.sqrt(4.0 / slopes) * moments.height / films[:, None]
+    levels = np.array([strip.levels(spec) for strip in strips])
+    films = np.array([strip.thickness(strip.middles) for strip in strips])
+    lowest = levels.argmin(axis=1)[:, None]
+    levels, films = (np.take_along_axis(each, lowest, axis=1) for each in (levels, films))
+    # The mean summit rises by the square of the rms height in the gap, over the film.
+    smallest = np.sqrt(4.0 / np.array([moments.across, moments.along])) * films / levels**2
     smallest[:, 1] = np.minimum(smallest[:, 1], [strip.width / 8.0 for strip in strips])
     return 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
