@@ -20,7 +20,7 @@ import xarray as xr
 
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_answers import COARSEST
-from lube.contact.surface_strip import mean_breaking_curvature, strip_films
+from lube.contact.surface_strip import mean_breaking_curvature, smallest_contacts, strip_films
 from lube.ehl.line_contact import one_blas_thread
 from lube.kernels.summits import Summits, connected_summits, passing_contacts
 from lube.surfaces.rough_surface import longest_waves, rough_surface, surface_waves
@@ -86,11 +86,11 @@ def revolution_contact(
 
 def _passages(pair, film, known):
     """Surface of which pieces are drawn, and their passages through known strips, by point."""
-    widths = [strip.width for strip in known.values()]
-    multiple = 2**COARSEST if pair.gap.is_answered else 1
-    # The grid resolves the narrowest strip.
-    resolved = math.inf, min(widths) / 8.0
-    surface = rough_surface(pair.spec, max(widths), resolved, multiple=multiple)
+    strips = list(known.values())
+    widest, multiple = max(one.width for one in strips), 2**COARSEST if pair.gap.is_answered else 1
+    # The grid resolves the smallest contacts under the film under which there are most.
+    smallest = tuple(smallest_contacts(pair.spec, strips).max(axis=0).tolist())
+    surface = rough_surface(pair.spec, widest, smallest, multiple=multiple)
     sharp = mean_breaking_curvature(pair, film)
     with one_blas_thread():
         passages = {point: _Passage(strip, pair, surface, sharp) for point, strip in known.items()}
@@ -111,6 +111,7 @@ class _Passage:
 
     def __init__(self, strip, pair, surface, sharp):
         spec, along = pair.spec, surface.spacing[1]
+        self._along = along
         self._film = strip.films(along) / spec.height_step
         self._sharp = strip.breaking_curvatures(strip.columns(along), sharp) / spec.height_step
         self._lowest = _lowest(strip, spec, pair.length, sharp) / spec.height_step
@@ -126,12 +127,15 @@ class _Passage:
     def add(self, summits, waves, contact):
         """Add the contacts of a piece."""
         summits = _selected(summits, np.flatnonzero(summits.height > self.lowest_drawn))
-        by_oil, shapes = np.zeros((2, summits.row.size, 0)), np.zeros((self._film.size, 0))
+        by_oil, shapes = np.zeros((4, summits.row.size, 0)), np.zeros((self._film.size, 0))
         if self._answer:
             oil = self._answer.of_waves([waves])
             places = np.stack([summits.row, summits.column]) / (1 << oil.shift)
-            both = oil.fields[1:-1, 1:-1], self._answer.curvatures(oil.fields)
-            by_oil = np.stack([_interpolated(fields, places) for fields in both])
+            each = oil.fields[1:-1, 1:-1], self._answer.curvatures(oil.fields)
+            each += self._answer.slopes(oil.fields)
+            by_oil = np.stack([_interpolated(fields, places) for fields in each])
+            by_oil[2] *= self._along
+            by_oil[3] *= self._inverse_root(summits)[:, None]
             most = np.einsum("sm,nm->sn", by_oil[0], oil.shapes).max(axis=1, initial=-np.inf)
             some = np.flatnonzero(summits.height + most > self._lowest)
             summits, by_oil = _selected(summits, some), by_oil[:, some]
@@ -147,6 +151,13 @@ class _Passage:
             self.first_step,
             contact,
         )
+
+    def _inverse_root(self, summits):
+        """Inverse square root of the curvature of summits along the rollers, m."""
+        # Ridges at an angle are taken as ridges along the rollers or along rolling.
+        along = 0.5 * summits.reach * self._along**2
+        product = (summits.area / (2.0 * np.pi)) ** 2
+        return np.sqrt(np.maximum(2.0 * summits.curvature * product - along, 0.0))
 
 
 def _interpolated(values, places):

@@ -175,8 +175,9 @@ def passing_contacts(
     summits : Summits
         In the order of their columns.
     added : numpy.ndarray
-        What the oil adds to each summit's height and curvature, as factors of `shapes`, shape
-        (2, S, M).
+        What the oil adds to each summit's height and curvature, to its slope along rolling, height
+        steps per column, and to that along the rollers, over the square root of the curvature, as
+        factors of `shapes`, shape (4, S, M).
     film, sharp : numpy.ndarray
         Shape (W,) each, as in `lube.kernels.areal.touching_strips`.
     shapes : numpy.ndarray
@@ -241,10 +242,16 @@ def _touching(summits, added, strip, moved, number, column):
     film, shapes, has_edges = strip
     here, width = summits.column[number] + moved, film.size
     overlap = summits.height[number] - film[column] + _by_oil(added[0], shapes, number, column)
+    # Where film and oil slope, the overlap is greatest beside the summit.
+    before, after = film[max(column - 1, 0)], film[min(column + 1, width - 1)]
+    bent = max(1.0 + 0.5 * summits.reach[number] * (before + after - 2.0 * film[column]), 0.5)
+    along = 0.5 * (before - after) + _by_oil(added[2], shapes, number, column)
+    down = _by_oil(added[3], shapes, number, column)
+    overlap += 0.25 * summits.reach[number] / bent * along * along + 0.5 * down * down
     inside = min(here, width - 1 - here)
     if overlap <= 0.0 or (inside < 0.0 and not has_edges):
         return 0.0
-    area = summits.area[number] * overlap
+    area = summits.area[number] * overlap / math.sqrt(bent)
     if has_edges:
         inside /= math.sqrt(summits.reach[number] * overlap)
         if inside <= -1.0:

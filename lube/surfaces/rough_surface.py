@@ -28,7 +28,7 @@ POINTS_PER_WAVE = 5
 """Grid points in the shortest wavelength."""
 LONGEST_WAVES = 4
 """Longest wavelengths along a side of the surface."""
-POINTS_PER_CONTACT = 6
+POINTS_PER_CONTACT = 8
 """Grid points across the smallest contacts, unless a side then has more than `LARGE` points."""
 LARGE, LARGEST = 4096, 8192
 """Most points along a side to which the grid is refined for small contacts, and most allowed."""

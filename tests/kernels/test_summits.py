@@ -93,7 +93,7 @@ def summits(columns, heights, curvatures=None, saddles=None, higher=None):
 def passed(some, film, sharp=0.0, has_edges=False, added=None, shapes=None, steps=60):
     film, count = np.array(film, float), some.row.size
     contact = np.zeros(steps)
-    added = np.zeros((2, count, 0)) if added is None else np.array(added, float)
+    added = np.zeros((4, count, 0)) if added is None else np.array(added, float)
     shapes = np.zeros((film.size, 0)) if shapes is None else np.array(shapes, float)
     sharp = np.broadcast_to(float(sharp), film.shape).copy()
     passing_contacts(some, added, film, sharp, shapes, has_edges, -40, contact)
@@ -105,12 +105,25 @@ def diameter(area):
 
 
 def test_a_summit_touches_where_the_film_is_thinner_than_it_is_high():
-    film = [9.0, 4.0, 3.0, 6.0, 9.0]
-    contact = passed(summits([20.0], [5.0]), film)
+    contact = passed(summits([20.0], [5.0]), [9.0, 9.0, 4.0, 4.0, 4.0, 3.0, 3.0, 3.0, 9.0, 9.0])
     # In step t, counted from -40, column 20 is in column t - 20 of the strip.
+    np.testing.assert_allclose(contact[[23, 26]], diameter(2.0 * np.array([1.0, 2.0])))
+
+
+def test_under_a_bent_film_the_overlap_is_greatest_beside_the_summit():
+    """The summit is 4 - (x - s)^2 / 4 high, the film 3 + (x - 4)^2 / 4."""
+    contact = passed(summits([20.0], [4.0]), 3.0 + 0.25 * (np.arange(9.0) - 4.0) ** 2)
+    overlap = 1.0 - (np.arange(9.0) - 4.0) ** 2 / 8.0
     expected = np.zeros(60)
-    expected[[21, 22]] = diameter(2.0 * np.array([1.0, 2.0]))
+    expected[22:27] = diameter(2.0 * overlap[2:7] / np.sqrt(2.0))
     np.testing.assert_allclose(contact, expected)
+
+
+def test_a_slope_that_the_oil_adds_moves_a_summit_up():
+    """By 0.3 along rolling, over 4 - x^2 / 4, and along the rollers over 4 - 0.5 x^2."""
+    added = np.array([0.0, 0.0, 0.3, 0.2])[:, None, None]
+    contact = passed(summits([20.0], [4.0]), [3.0, 3.0, 3.0], 0.0, False, added, np.ones((3, 1)))
+    assert contact[21] == pytest.approx(diameter(2.0 * (1.0 + 0.3**2 + 0.5 * 0.2**2)))
 
 
 def test_an_edge_cuts_the_area_of_a_contact():
@@ -140,7 +153,7 @@ def test_summits_of_one_contact_add_up_and_the_highest_decides():
 
 
 def test_what_the_oil_adds_raises_summits_and_saddles_alike():
-    shapes, added = np.linspace(-1.0, 1.0, 5)[:, None], [[[2.0], [2.0]], [[0.0], [0.0]]]
+    shapes, added = np.linspace(-1.0, 1.0, 5)[:, None], [[[2.0], [2.0]], *3 * [[[0.0], [0.0]]]]
     pair = summits([20.0, 20.0], [5.0, 6.0], None, [4.5, -np.inf], [1, 1])
     moved = passed(pair, np.full(5, 5.0), added=added, shapes=shapes)
     for column in range(5):
