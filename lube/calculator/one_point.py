@@ -125,8 +125,9 @@ def profile(
     -------
     Answer
         ``pressure`` (MPa) and ``film`` (um), which is the gap outside the contact, over
-        ``position`` (um) from the line of centres, negative at the inlet; also ``central_film``,
-        ``minimum_film``, ``hertz_pressure`` and ``contact_half_width``.
+        ``position`` (um) from the line of centres, negative at the inlet, where it begins at a
+        thousandth of the greatest pressure, so that some 0.4 % of the load are missing; also
+        ``central_film``, ``minimum_film``, ``hertz_pressure`` and ``contact_half_width``.
 
     Raises
     ------

@@ -279,6 +279,9 @@ def _table(pair, film, of_pairs, runs, slide_to_roll_ratio):
     spec, slip = pair.spec, xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
     rolling = of_pairs.map(_in_pure_rolling)
     in_window, rate = _in_time(pair, film, runs, slip)
+    if not pair.gap.is_uniform:  # a rate is not known of breakthroughs none of which begins
+        begin = rate.mean("pair") > 0.0
+        rate = rate.where(begin | (of_pairs["breakthrough_probability"].mean("pair") == 0.0))
     of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
     turn = _turn(spec.points[0] * spec.spacing, film["entrainment_speed"], slip)
     duration = in_window.mean("pair") / rate.mean("pair")

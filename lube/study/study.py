@@ -496,7 +496,8 @@ class Study(StrictModel):
         }
         for what, is_so in needed.items():
             if not is_so:
-                raise ValueError(f"rig.contact_model: got surface, need line, or {what}")
+                line = "line" if self.line_spec.follows_rolling else "line, without records then"
+                raise ValueError(f"rig.contact_model: got surface, need {line}, or {what}")
 
     @property
     def trace_points(self) -> list[dict]:

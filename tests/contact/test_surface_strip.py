@@ -121,6 +121,26 @@ def test_ridges_as_long_as_the_rollers_touch_as_often_as_their_line(make_spec, f
     assert np.all(error < 0.1 * line)
 
 
+@pytest.mark.parametrize("ratio", [1.0, 10.0, 100.0])
+def test_ridges_longer_than_the_contact_is_wide_touch_as_often_as_expected(
+    make_spec, film, study, ratio
+):
+    """The grid resolves the strip too; of its area the part touches where heights are above."""
+    few = film.isel(film_formula=0, temperature=0, speed=0, force=[2, 4])
+    waves = {"longest_wavelength": 4e-4, "shortest_wavelength": "16 points"}
+    spec = make_spec(50_000, **waves, lay_ratio=ratio, lay_angle=0.0)
+    few["film_thickness"] = 3.0 * np.sqrt(surface_moments(spec).height) + 0.0 * few["force"]
+    pair = RoughPair(spec, 2e-3, study.boundary_layer, SEED)
+    found = surface_contact(pair, few, fewer=2, weaker=1e6)
+    for name, expected in (
+        ("contacts", found["expected_contacts"]),
+        ("breakdown_ratio", scipy.special.ndtr(-3.0)),
+    ):
+        half = found[f"{name}_upper"] - found[name]
+        assert (np.abs(found[name] - expected) < half + 0.02 * expected).all()
+        assert (half < 0.08 * expected).all()
+
+
 @pytest.mark.parametrize(("angle", "longer"), [(90.0, (1.0, 3.0)), (0.0, (3.0, 1.0))])
 def test_a_stretched_surface_has_the_contacts_of_the_isotropic_one(
     make_spec, film, study, angle, longer

@@ -23,7 +23,7 @@ from lube.stages import (
     roughness_lines,
 )
 from lube.stages.areal import make as make_areal
-from lube.stages.tail import _turn, make
+from lube.stages.tail import _in_uneven_windows, _turn, make
 from lube.study.rollers import OwnRoughness
 from lube.surfaces.rare_contact import draw_pair
 
@@ -401,6 +401,21 @@ def test_in_uneven_windows_as_many_pairs_touch_as_counted_and_as_late(coarse, st
     wait = found["first_breakthrough_time"].values / revolution
     np.testing.assert_allclose(np.nanmean(first, axis=0), wait, atol=0.1)
     assert share.max() > 0.9 and share.min() < 0.6
+
+
+def test_in_uneven_windows_a_rate_is_unknown_if_no_breakthrough_begins(coarse, study, monkeypatch):
+    oil, levels = lubricant_table(study.lubricants, [40.0]), ([800.0], [100.0, 140.0], ["paper"])
+    film = film_table(oil, study.rollers, *levels, with_shape=True)
+
+    def none_begins(*given):
+        in_window, rate = _in_uneven_windows(*given)
+        return in_window, rate.where(rate["speed"] > 120.0, 0.0)
+
+    monkeypatch.setattr("lube.stages.tail._in_uneven_windows", none_begins)
+    found = make(coarse(film_shape="computed", shear_strength=1e5), {"film": film})
+    assert (found["breakthrough_probability"] > 0.0).all()
+    for name in ("breakthrough_rate", "breakthrough_rate_upper", "breakthroughs_per_revolution"):
+        assert found[name].isnull().squeeze().values.tolist() == [True, False]
 
 
 # --- Lines that are not Gaussian ---------------------------------------------------------
