@@ -125,9 +125,9 @@ def test_what_does_not_suit_is_refused_in_one_line(rollers, oil, argument, value
     assert str(caught.value).startswith(said) and "\n" not in str(caught.value)
 
 
-def test_a_threshold_is_checked_without_a_rig_too(rollers, oil):
-    with pytest.raises(LubeError, match=r"^threshold: got 'nonsense'"):
-        lube.plan(rollers, oil, **POINT, threshold="nonsense")
+def test_a_threshold_needs_a_rig(rollers, oil):
+    with pytest.raises(LubeError, match=r"^threshold: got '10 ohm' without a rig, need rig, too"):
+        lube.plan(rollers, oil, **POINT, threshold="10 ohm")
 
 
 def test_rollers_that_do_not_conduct_have_no_rig(oil):

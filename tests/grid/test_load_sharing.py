@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from lube.grid.load_sharing import share_load, surface_load_share
+from lube.grid.load_sharing import MOST, share_load, surface_load_share
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.contact_pressure import contact_pressure
@@ -72,6 +72,18 @@ def test_the_starvation_is_that_of_the_film_which_carries_the_rest_of_the_load(s
             each["starvation_factor"].isel(film_formula=number).item() for each in (shared, alone)
         )
         assert found == pytest.approx(expected, rel=1e-3) and found < 0.97
+
+
+def test_without_a_balance_the_starvation_is_that_of_the_least_load_on_the_oil(study, spec):
+    oil, levels = lubricant_table(study.lubricants, [80.0]), ([0.5], ["paper", "computed"])
+    sharing = {"rough_surfaces": spec, "load_sharing": "iterated"}
+    films = [
+        film_table(oil, study.rollers, [load], *levels, inlet_meniscus=0.3e-3, **more).squeeze()
+        for load, more in ((400.0, sharing), (400.0 * (1.0 - MOST), {}))
+    ]
+    assert (films[0]["surface_load_share"] > 1.0).all()
+    shared, alone = (film["starvation_factor"].values for film in films)
+    np.testing.assert_allclose(shared, alone, rtol=1e-3)
 
 
 @pytest.mark.parametrize("formula", ["moes", "computed"])
