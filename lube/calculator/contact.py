@@ -124,10 +124,10 @@ def contact_probability(
         share lies in 95 % of cases, with the slip given; ``surface_passage_width``, over which the
         rollers move while a contact is in the strip, and ``surface_breakthrough_width``, over which
         they move while the layer of a contact is broken; and ``surface_expected_breakthroughs`` and
-        ``surface_expected_contacts``, which are less than the numbers sampled at small lambda
-        ratios, where contacts have holes. From numbers and ``surface_breakthrough_width``:
-        ``surface_breakthrough_rate``, per hour, with ``_lower`` and ``_upper``, and
-        ``surface_breakthrough_duration``.
+        ``surface_expected_contacts``, which are less than the numbers sampled where contacts have
+        holes, with the default band by 2 % at a lambda ratio of 9 and 15 % at 4.5. From numbers and
+        ``surface_breakthrough_width``: ``surface_breakthrough_rate``, per hour, with ``_lower`` and
+        ``_upper``, and ``surface_breakthrough_duration``.
 
     Raises
     ------

@@ -237,7 +237,7 @@ def fit_records(
 
 def _fit(log_factors, logits, comparison, contact_model):
     """Return the fit of a factor, as a function of the shares of the records."""
-    logits, covariance = logits + _pooled_shift(comparison), _pair_scatter(comparison)
+    logits, covariance = logits + pooled_shift(comparison), _pair_scatter(comparison)
     if contact_model == "surface":
         size, count = comparison["sample_size"].values, SURFACES
         covariance *= pair_correlation(comparison["simulated_probability"].values)
@@ -265,8 +265,19 @@ def _usable(logits, comparison):
     return logits[:, used], comparison.isel(record=used)
 
 
-def _pooled_shift(comparison):
-    """Logits of the pooled probability less those of the mean; 0 where either is not finite."""
+def pooled_shift(comparison: xr.Dataset) -> Array:
+    """Logits of the pooled probability less those of the mean; 0 where either is not finite.
+
+    Parameters
+    ----------
+    comparison : xarray.Dataset
+        As in `fit_records`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (record,).
+    """
     pooled, mean = (comparison[f"{name}_probability"].values for name in ("pooled", "simulated"))
     with np.errstate(invalid="ignore"):
         shift = scipy.special.logit(pooled) - scipy.special.logit(mean)

@@ -304,6 +304,32 @@ def reading_of_surfaces(reading: Array, probability: Array) -> Array:
     return reading * -np.log1p(-known) * (1.0 - known) / known
 
 
+def reading_of_lines(reading: Array, probability: Array) -> Array:
+    """Find the relative error of a rig's reading of lines, from that of surfaces.
+
+    Parameters
+    ----------
+    reading : numpy.ndarray
+        Relative error of the share of surfaces.
+    probability : numpy.ndarray
+        Probability P of contact of surfaces.
+
+    Returns
+    -------
+    numpy.ndarray
+        Relative error r of `reading_of_surfaces`; its mean where surfaces touch for more than 99 %
+        of the time, which does not tell it, and 0 if they do everywhere.
+
+    Examples
+    --------
+    >>> reading_of_lines(np.array([0.1, 0.0256, 0.0]), np.array([1e-6, 0.9, 1.0])).round(2)
+    array([0.1, 0.1, 0.1])
+    """
+    found = reading / reading_of_surfaces(np.ones_like(reading), probability)
+    known = np.isfinite(found) & (probability < 0.99)
+    return np.where(known, found, found[known].mean() if known.any() else 0.0)
+
+
 def half_widths(found: Slopes, by_coefficient: Array, error: Array, realisations: int) -> Array:
     """Half-widths of the 95 % intervals of all quantities, relative to them.
 

@@ -75,7 +75,9 @@ def surface_prediction(
         Lower and upper limit.
     """
     noise = np.hypot(noise, error_of_limits(limits))
-    lower, upper = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
+    # A probability of 1 is only rounded: it was not counted in so many windows.
+    share = np.minimum(limits[0], np.nextafter(1.0, 0.0))
+    lower, upper = prediction_limits(share, size, ratio, SURFACES, noise, 0.0)
     # No pair is better known than the mean, whose limits are not as far from it near 0 and 1.
     return np.minimum(lower, limits[1]), np.maximum(upper, limits[2])
 

@@ -10,12 +10,14 @@ scatter between the realisations; the interval includes it, and the error of the
 are compared with surfaces are also read as contact of surfaces.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import scipy.special
 import xarray as xr
 
 from lube.contact.surface_strip import SURFACES
-from lube.inference.fits import fit_alpha, fit_layer_strength
+from lube.inference.fits import fit_alpha, fit_layer_strength, pooled_shift
 from lube.inference.record_curves import RecordCurves, gauged_ratios, map_curves, own_curves
 from lube.inference.surface_records import reading_errors, surface_curves
 from lube.inference.surface_scatter import pair_shares
@@ -134,8 +136,11 @@ def gauge_film(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         thinner one, NaN where there is none.
     """
     sigma = comparison["composite_rms_roughness"].item()
-    ratios = gauged_ratios(curves.of_records, comparison, comparison["share_error"].values)
-    shared = zip(curves.of_records, comparison["measured_share"].values, strict=True)
+    # The pooled probability is known better than that of the realisations, from which curves are.
+    each = zip(curves.of_records, pooled_shift(comparison.isel(film_formula=0)), strict=True)
+    shifted = [replace(curve, logits=curve.logits + shift) for curve, shift in each]
+    ratios = gauged_ratios(shifted, comparison, comparison["share_error"].values)
+    shared = zip(shifted, comparison["measured_share"].values, strict=True)
     thinner = [curve.thinner_film_at(share) for curve, share in shared]
     found = {
         **values_with_limits("gauged_lambda_ratio", ratios),

@@ -28,19 +28,20 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     All values are for the first film formula and the slide-to-roll ratio nearest to pure rolling,
     and for records of one pair of rollers with the study's rig. In a study of surfaces they are
-    over contact_model. The rig runs with lines, so its error of surfaces follows from theirs.
+    over contact_model. The rig runs with lines, or with surfaces; its error of the others follows
+    from theirs.
     """
     slip = rolling(study.slips)
     film = at_slip(with_surface_responses(inputs), slip).isel(film_formula=0, drop=True)
     film = film.transpose(*POINT_DIMS, ...)
-    threshold, reading = _reading(inputs["electrical"], study)
+    threshold, readings = _readings(study, inputs, slip)
     by_coefficient = _by_coefficient(study, inputs["lubricant"], film, slip)
     coordinates = {name: film[name].values for name in POINT_DIMS}
     coordinates |= {"quantity": list(planning.QUANTITIES), "turns": list(TURNS)}
     sizes, tables = [film.sizes[name] for name in POINT_DIMS], {}
     for model in study.contact_model:
         of_model = _of_lines if model == "line" else _of_surfaces
-        scatter = of_model(study, inputs, film, slip, reading, threads)
+        scatter = of_model(study, inputs, film, slip, readings[model], threads)
         unknown = {"half_width": 0.0}
         if "sensitivity" in inputs:
             unknown["half_width_assumed"] = _assumed(inputs["sensitivity"], study, model)
@@ -101,11 +102,15 @@ def _of_lines(study, inputs, film, slip, reading, threads):
 
 def _of_surfaces(study, inputs, film, slip, reading, threads):
     """As `_of_lines`, of surfaces; the sample size is that of a revolution of pure rolling."""
-    areal = inputs["areal"].sel(slide_to_roll_ratio=slip, drop=True).isel(film_formula=0, drop=True)
     found, size, ratios = planning.on_surfaces(
-        RoughPair.of(study), film, areal, slip, TURNS, study.rig.drift, threads
+        RoughPair.of(study), film, _areal(inputs, slip), slip, TURNS, study.rig.drift, threads
     )
-    return found, size, ratios, planning.reading_of_surfaces(reading, found.probability), SURFACES
+    return found, size, ratios, reading, SURFACES
+
+
+def _areal(inputs, slip):
+    """Contact of surfaces under the first film formula."""
+    return inputs["areal"].sel(slide_to_roll_ratio=slip, drop=True).isel(film_formula=0, drop=True)
 
 
 def _sample_size(contact, film, slip):
@@ -119,6 +124,17 @@ def _sample_size(contact, film, slip):
 def _digits(values):
     """Round to six digits; NaN where a slope or an interval is infinite."""
     return six_digits(np.where(np.isfinite(values), values, np.nan))
+
+
+def _readings(study, inputs, slip):
+    """Threshold as from `_reading`, and the relative errors there by contact model."""
+    threshold, reading = _reading(inputs["electrical"], study)
+    if not study.has_surfaces:
+        return threshold, {"line": reading}
+    share = _areal(inputs, slip)["breakthrough_probability"].transpose(*POINT_DIMS).values.ravel()
+    if study.rig.has_surfaces:
+        return threshold, {"line": planning.reading_of_lines(reading, share), "surface": reading}
+    return threshold, {"line": reading, "surface": planning.reading_of_surfaces(reading, share)}
 
 
 def _reading(electrical, study):

@@ -231,10 +231,11 @@ def surface_grid(
             # The side decreases with the longest wave, unless the contact is far wider than it.
             most = min(side / times / waves, side / times - width) / longest
             own = max(line.longest_across_lay for line in spec.lines)
+            given = min(line.shortest_wavelength for line in spec.lines)
             # Rounded down, so that the length does.
             shorter = f", or a longest of {995.0 * most * own:.3g} mm" if most > 0.1 else ""
             raise DataError(
-                f"roughness: got a shortest wavelength of {1e6 * shortest:.3g} µm, too short for a "
+                f"roughness: got a shortest wavelength of {1e6 * given:.3g} µm, too short for a "
                 f"surface of {1e3 * side:.3g} mm, need one {times:.3g} times as long{lay}{shorter}"
             )
         sides.append(side)
