@@ -13,6 +13,7 @@ from lube.inference.planning import (
     half_widths,
     line_ratios,
     on_surfaces,
+    reading_of_lines,
     reading_of_surfaces,
     relative_error,
     slopes,
@@ -249,6 +250,13 @@ def test_a_film_that_is_not_known_tells_nothing(thick, weak, contact):
     error = relative_error(found.probability, size, ratios)
     widths = half_widths(found, np.ones(3), error, 16)
     assert np.isnan(widths[:, :, 1]).all() and np.isfinite(widths[0, :, [0, 2]]).any()
+
+
+def test_the_error_in_reading_lines_follows_from_that_of_surfaces():
+    shares, lines = np.array([1e-4, 0.3, 0.8, 0.95]), np.array([0.1, 0.2, 0.3, 0.4])
+    found = reading_of_lines(reading_of_surfaces(lines, shares), shares)
+    np.testing.assert_allclose(found, [0.1, 0.2, 0.3, 0.2])
+    assert reading_of_lines(np.array([0.1]), np.array([0.99])) == 0.0
 
 
 def test_a_rig_that_misses_contacts_reads_surfaces_as_it_would_fewer_of_them():

@@ -77,6 +77,13 @@ def test_one_pair_is_not_better_known_than_a_mean_whose_limit_is_cut(limits):
     assert lower <= limits[1] and upper >= limits[2]
 
 
+def test_a_probability_that_is_rounded_to_one_is_predicted_as_one_just_below():
+    for share in (1.0 - 1e-13, 1.0):
+        limits = np.array([share, 1.0 - 1e-12, 1.0])
+        lower, upper = surface_prediction(limits, 1000.0)
+        assert 1.0 - 1e-6 < lower <= limits[1] and upper == 1.0
+
+
 def test_equal_rollers_in_pure_rolling_repeat_themselves(busy_study):
     np.testing.assert_array_equal(scatter(busy_study, turns=1.0), 1.0)
     np.testing.assert_array_equal(scatter(busy_study, turns=20.0), 1.0)

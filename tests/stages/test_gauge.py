@@ -148,6 +148,16 @@ def test_records_with_slip_are_gauged_too_and_better(busy, at_point):
 # Curves of the records' own films, where no map has them
 
 
+def test_a_record_of_the_pooled_probability_has_the_film_itself(busy, at_point):
+    """Its realisations touch less often than all pairs of their lines."""
+    one = at_point([0.1])
+    pooled = 1.2 * one["simulated_probability"]
+    share = pooled.isel(film_formula=0).drop_attrs()
+    one = one.assign(pooled_probability=pooled, measured_share=share)
+    found = film_by_map(busy, one)["gauged_film_thickness"].item()
+    assert found == pytest.approx(one["film_thickness"].isel(film_formula=0).item(), rel=0.01)
+
+
 def test_curves_of_the_records_own_films_say_what_the_map_says(busy, own):
     gauged = gauge_by_map(busy, own)
     found = gauge_records(own_curves(busy.study, own), busy.study, own)

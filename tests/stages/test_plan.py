@@ -180,6 +180,15 @@ def test_surfaces_are_planned_by_their_own_probability_and_scatter(both, both_fi
     assert (surface["reading_error"] <= both["reading_error"].sel(contact_model="line")).all()
 
 
+def test_a_rig_with_surfaces_has_its_own_error_in_reading_them(both_study, both_files, found):
+    with_surfaces = both_study.rig.model_copy(update={"contact_model": "surface"})
+    study = both_study.model_copy(update={"rig": with_surfaces})
+    with on_few_surfaces(4):
+        own = plan.make(study, both_files, 2)["reading_error"]
+    own, read = own.sel(contact_model="surface", drop=True), found["reading_error"]
+    np.testing.assert_allclose(own.transpose(*read.dims), read, rtol=1e-5)
+
+
 def test_the_band_of_the_assumptions_is_of_the_models_that_are_sampled(
     both, both_study, both_files
 ):
