@@ -271,7 +271,8 @@ def _with_shares(comparison, shares):
 def _films(comparison, curves, shares):
     """Gauged films of all pairs, one after the other along the record dimension."""
     names = ["contact_half_width", "film_thickness", "breakthrough_probability"]
-    names += ["scatter_ratio", "share_error", "composite_rms_roughness"]
+    names += ["simulated_probability", "pooled_probability", "scatter_ratio", "share_error"]
+    names += ["composite_rms_roughness"]
     pairs, points = shares.shape
     everyone = comparison[names].drop_vars("record").isel(record=np.tile(range(points), pairs))
     curves = replace(curves, of_records=curves.of_records * pairs)
