@@ -174,7 +174,7 @@ def compare_in_motion(spec, surface, heights, film, slip):
         error = np.std(found, ddof=1) / len(found) ** 0.5
         # Theory does not count contacts that merge, and pixels merge more.
         assert abs(np.mean(found) - expected) < 3.0 * error + 0.08 * np.mean(found)
-        assert error < 0.2 * np.mean(found)
+        assert error < 0.25 * np.mean(found)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from lube.study.roller_lines import line_spec
 
 from .test_surface_trace import LAY, films
 
-LENGTH, PAIRS = 0.6e-3, 8
+LENGTH, PAIRS = 0.6e-3, 12
 # The grid is coarse, and the layer so weak that it nearly always breaks.
 POINTS, WEAKER = 20_000, 0.02
 SHAPED, ANSWERED = Gap("computed", "none"), Gap("computed", "computed")
@@ -58,8 +58,9 @@ def test_pairs_of_rollers_touch_as_often_as_sampled_surfaces(study, make_small, 
     mean, _, upper = mean_interval(shares)
     expected, high = (sampled[f"breakthrough_probability{end}"].values for end in ("", "_upper"))
     assert expected.min() > 0.01 and expected.max() < 0.99
-    assert (np.abs(mean - expected) < np.hypot(upper - mean, high - expected) + 0.02).all()
-    # Pairs differ as theory says: within a factor, since eight pairs scatter themselves.
+    # Contacts whose summit is beyond the ends of rollers, here short, are left out.
+    assert (np.abs(mean - expected) < np.hypot(upper - mean, high - expected) + 0.03).all()
+    # Pairs differ as theory says: within a factor, since twelve pairs scatter themselves.
     scatter = shares.std(axis=0, ddof=1) / sampled["pair_deviation"].values
     assert (scatter > 0.4).all() and (scatter < 2.0).all()
 
