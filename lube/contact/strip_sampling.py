@@ -107,7 +107,7 @@ def sampled_strips(
     on_one_surface = partial(_on_one_surface, surface, covariances, sampled, reach)
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
-    # Columns at the edges stand for half as much of the strip.
+    # With columns at both edges there is one more than the strip has room for.
     columns = zip(strips, sampled, strict=True)
     apart = np.array(
         [one.width / own.film.size if one.has_edges else along for one, own in columns]

@@ -327,18 +327,7 @@ class AnsweredStrip:
         return 0.5 * (down / self.apart[0] ** 2 + along / self.apart[1] ** 2)
 
     def slopes(self, heights: Array) -> Pair:
-        """Slopes of heights at nodes, along rolling and along the rollers.
-
-        Parameters
-        ----------
-        heights : numpy.ndarray, shape (rows, nodes, ...)
-            Heights.
-
-        Returns
-        -------
-        tuple of numpy.ndarray, shape (rows - 2, nodes - 2, ...)
-            Height over metres, at all nodes but the outermost.
-        """
+        """As `curvatures`, the slopes of heights along rolling and along the rollers."""
         along = heights[1:-1, 2:] - heights[1:-1, :-2]
         down = heights[2:, 1:-1] - heights[:-2, 1:-1]
         return along / (2.0 * self.apart[1]), down / (2.0 * self.apart[0])

@@ -242,7 +242,8 @@ def _touching(summits, added, strip, moved, number, column):
     film, shapes, has_edges = strip
     here, width = summits.column[number] + moved, film.size
     overlap = summits.height[number] - film[column] + _by_oil(added[0], shapes, number, column)
-    # Where film and oil slope, the overlap is greatest beside the summit.
+    # Where film and oil slope, the overlap is greatest beside the summit: by a parabola, which is
+    # no longer one where the film bends away by half of the summit's curvature.
     before, after = film[max(column - 1, 0)], film[min(column + 1, width - 1)]
     bent = max(1.0 + 0.5 * summits.reach[number] * (before + after - 2.0 * film[column]), 0.5)
     along = 0.5 * (before - after) + _by_oil(added[2], shapes, number, column)

@@ -174,7 +174,7 @@ def compare_in_motion(spec, surface, heights, film, slip):
         error = np.std(found, ddof=1) / len(found) ** 0.5
         # Theory does not count contacts that merge, and pixels merge more.
         assert abs(np.mean(found) - expected) < 3.0 * error + 0.08 * np.mean(found)
-        assert error < 0.25 * np.mean(found)
+        assert error < 0.2 * np.mean(found)
 
 
 @pytest.mark.parametrize(
@@ -232,7 +232,7 @@ def test_contacts_that_the_oil_answers_appear_as_often_as_on_surfaces_in_motion(
     """Waves that the oil lowers on their way touch for a shorter time than surfaces as drawn."""
     spec = make_spec(50_000, **FEW, **lay)
     surface = rough_surface(spec, contact=(6e-5, 6e-5), waves=6, multiple=2**COARSEST)
-    strip, film = answered_strip(study, spec, film_shape, slip, 2.2)
+    strip, film = answered_strip(study, spec, film_shape, slip, 2.0)
     compare_in_motion(spec, surface, Filtered(surface, strip, film).heights, strip, slip)
 
 

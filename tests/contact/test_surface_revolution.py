@@ -13,7 +13,7 @@ from lube.study.roller_lines import line_spec
 
 from .test_surface_trace import LAY, films
 
-LENGTH, PAIRS = 0.6e-3, 12
+LENGTH, PAIRS = 1.2e-3, 12
 # The grid is coarse, and the layer so weak that it nearly always breaks.
 POINTS, WEAKER = 20_000, 0.02
 SHAPED, ANSWERED = Gap("computed", "none"), Gap("computed", "computed")
@@ -50,7 +50,7 @@ def make_small(study):
 )
 def test_pairs_of_rollers_touch_as_often_as_sampled_surfaces(study, make_small, layer, gap, lay):
     spec = make_small(**lay)
-    film = films(study, spec, [2.6, 3.2], gap=gap)
+    film = films(study, spec, [2.8, 3.4], gap=gap)
     sampled = surface_contact(RoughPair(spec, LENGTH, layer, 1, gap), film, fewer=2)
     pair = RoughPair(spec, LENGTH, layer, 2, gap)
     lengths = [revolution_contact(pair, film, number) for number in range(PAIRS)]
@@ -58,8 +58,7 @@ def test_pairs_of_rollers_touch_as_often_as_sampled_surfaces(study, make_small, 
     mean, _, upper = mean_interval(shares)
     expected, high = (sampled[f"breakthrough_probability{end}"].values for end in ("", "_upper"))
     assert expected.min() > 0.01 and expected.max() < 0.99
-    # Contacts whose summit is beyond the ends of rollers, here short, are left out.
-    assert (np.abs(mean - expected) < np.hypot(upper - mean, high - expected) + 0.03).all()
+    assert (np.abs(mean - expected) < np.hypot(upper - mean, high - expected) + 0.02).all()
     # Pairs differ as theory says: within a factor, since twelve pairs scatter themselves.
     scatter = shares.std(axis=0, ddof=1) / sampled["pair_deviation"].values
     assert (scatter > 0.4).all() and (scatter < 2.0).all()
