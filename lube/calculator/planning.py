@@ -96,8 +96,9 @@ def plan(
     Answer
         The variables of `lube.film`; ``breakthrough_probability`` by importance sampling;
         ``half_width``, the half-width of the expected interval of each ``quantity`` relative to the
-        quantity, NaN where the record tells less than a factor of two; and ``reading_error``. They
-        have the dimensions turns and threshold if several are given. With `bands` also
+        quantity, NaN where the record tells less than a factor of two, or where it is not known to
+        a third how the probability changes with the quantity; and ``reading_error``. They have the
+        dimensions turns and threshold if several are given. With `bands` also
         ``half_width_assumed``, the half-width if the other quantities are uncertain.
 
     Raises

@@ -26,7 +26,12 @@ from lube.ehl.line_contact import one_blas_thread
 from lube.kernels.areal import BLOCK, GROUP, contacts_per_row, touching_strips
 from lube.kernels.moved_surface import NO_ANSWER
 from lube.schema import LIMITS, values_with_limits
-from lube.statistics.confidence import breakthrough_limit, jackknife_interval, mean_interval
+from lube.statistics.confidence import (
+    breakthrough_limit,
+    jackknife_interval,
+    left_out,
+    mean_interval,
+)
 from lube.surfaces.lay import extents
 from lube.surfaces.rough_surface import Surface, longest_waves
 from lube.threads import on_threads
@@ -51,6 +56,8 @@ COUNTS = {"geometric_contact_probability": "contacts", "breakthrough_probability
 """Probabilities, and the numbers in the strip that belong to them."""
 RATIO = "breakdown_ratio"
 """Variable of the part of the strip's area where the layer is broken."""
+WITHOUT = "groups_without"
+"""Variable of the number of groups of breakthroughs, -ln(1 - P), without each of the surfaces."""
 
 
 def sampled_strips(
@@ -88,7 +95,7 @@ def sampled_strips(
     -------
     dict of str to numpy.ndarray, shape (strips,)
         The probabilities and numbers of `COUNTS`, and `RATIO`, still as m of the strip's width,
-        each with ``_lower`` and ``_upper``.
+        each with ``_lower`` and ``_upper``; and `WITHOUT`, shape (surfaces, strips).
     """
     down, along = surface.spacing
     reach, step = _reach(pair.spec, down), pair.spec.height_step
@@ -117,10 +124,10 @@ def sampled_strips(
 
 def _with_limits(first, numbers, rows, widths, sampled):
     """Variables and their limits from all surfaces, for a strip of so many rows."""
-    results = {}
+    results, groups = {}, partial(_up_to_certain, rows=rows)
     for which, (name, of_contacts) in enumerate(COUNTS.items()):
         # The limits are of the number of contacts: near 1 a probability scatters to one side.
-        limits = jackknife_interval(first[:, :, which], partial(_up_to_certain, rows=rows))
+        limits = jackknife_interval(first[:, :, which], groups)
         results |= values_with_limits(name, [-np.expm1(-each) for each in limits])
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
     in_contact, broken = (mean_interval(widths * numbers[:, :, which]) for which in (2, 3))
@@ -133,7 +140,7 @@ def _with_limits(first, numbers, rows, widths, sampled):
     for end in LIMITS:  # no layer breaks without contact, but both are known with an error
         most = results[f"{geometric}{end}"]
         results[f"{breakthrough}{end}"] = np.minimum(results[f"{breakthrough}{end}"], most)
-    return results
+    return results | {WITHOUT: left_out(first[:, :, 1], groups)}
 
 
 def _up_to_certain(first, rows):

@@ -23,7 +23,7 @@ from lube.contact import strip_sampling
 from lube.contact.pair_scatter import RecurringContacts, pair_deviation, turn_ratio
 from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import StripFilm, surface_moments
-from lube.contact.strip_sampling import COUNTS, RATIO
+from lube.contact.strip_sampling import COUNTS, RATIO, WITHOUT
 from lube.contact.surface_answers import COARSEST, SurfaceAnswer
 from lube.contact.waves import answers_at
 from lube.grid.film_profiles import shaped_films
@@ -61,6 +61,7 @@ def surface_contact(
     slide_to_roll_ratio: xr.DataArray | float = 0.0,
     wanted: xr.DataArray | None = None,
     thicker: Values = 1.0,
+    left_out: bool = False,
 ) -> xr.Dataset:
     """Find how often, and at how many positions, surfaces touch over the length of the rollers.
 
@@ -87,6 +88,9 @@ def surface_contact(
         How many times thicker the films are under which contact is sampled, at all or at each. The
         surfaces, and how finely they are drawn, are those for the given films, so that contact
         changes by the film alone; way and scatter are those under the given films too.
+    left_out : bool, optional
+        Whether to return the results without each surface, too, from which the errors follow of
+        what is made of several probabilities.
 
     Returns
     -------
@@ -99,7 +103,8 @@ def surface_contact(
         a contact is broken, ``breakthrough_width`` (m); and the scatter of a pair's share of
         breakthrough in a revolution of pure rolling, ``pair_deviation``, as
         `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film
-        is not known or not wanted.
+        is not known or not wanted. With `left_out` also ``groups_without``, the number of groups
+        of breakthroughs, -ln(1 - P), without each of the surfaces; its first dimension is surface.
 
     Raises
     ------
@@ -112,20 +117,23 @@ def surface_contact(
     known = np.array([strip is not None for strip in strips])
     sharp = mean_breaking_curvature(pair, film) / weaker
     sharp = np.broadcast_to(sharp, thickness.size)
+    seeds = surface_seeds(pair.seed, SURFACES // fewer)
     values = {name: np.full(thickness.size, np.nan) for name in _VARIABLES}
+    values[WITHOUT] = np.full((len(seeds), thickness.size), np.nan)
     wanted = xr.DataArray(True) if wanted is None else wanted
     wanted = wanted.broadcast_like(thickness).transpose(*thickness.dims).values.ravel()
     if known.any():
         some = [strip for strip in strips if strip is not None]
-        seeds = surface_seeds(pair.seed, SURFACES // fewer)
         changed = np.broadcast_to(thicker, thickness.size)[known].tolist()
         changed = [one.thicker(times) for one, times in zip(some, changed, strict=True)]
         sampled = _contacts(pair, some, changed, sharp[known], wanted[known], seeds, threads)
         for name, of_known in sampled.items():
-            values[name][known] = of_known
-    dims, shape = thickness.dims, thickness.shape
+            values[name][..., known] = of_known
+    dims, shape, without = thickness.dims, thickness.shape, values.pop(WITHOUT)
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
     found = xr.Dataset(values, thickness.coords)
+    if left_out:
+        found[WITHOUT] = ("surface", *dims), without.reshape(-1, *shape)
     for name in (f"{RATIO}{end}" for end in LIMITS):
         found[name] = found[name] / (2.0 * half_width)
     points = thickness.copy(data=np.arange(thickness.size).reshape(shape))
@@ -190,6 +198,7 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
     """Variables of `surface_contact` at some strips, of which changed ones are sampled."""
     spec, length = pair.spec, pair.length
     found = {name: np.full(len(strips), np.nan) for name in _VARIABLES}
+    found[WITHOUT] = np.full((len(seeds), len(strips)), np.nan)
     expected, broken = (found[name] for name in _EXPECTED)
     for point in np.flatnonzero(wanted):
         expected[point], broken[point] = strips[point].expected(spec, length, sharp[point])
@@ -203,7 +212,7 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
             pair, surface, own, counts, is_certain, sharp[some], seeds, threads
         )
         for name, values in sampled.items():
-            found[name][some] = values
+            found[name][..., some] = values
 
     for surface, alike in _on_alike_grids(spec, strips):
         some = alike[wanted[alike]]

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.rough_pair import RoughPair
+from lube.contact.strip_sampling import WITHOUT
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import speed_ratios
@@ -20,6 +21,7 @@ from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.inference.record_scatter import crosswise
 from lube.inference.surface_scatter import revolution_size, surface_scatter
+from lube.statistics.confidence import jackknife_error, left_out
 from lube.statistics.one_pair import distinct_alignments, persistent_share, quantile, scatter_ratio
 from lube.study.rollers import RollerPair
 from lube.types import Array, Values
@@ -34,6 +36,8 @@ HOLDS = 1e-3
 """Part of the time in contact for which the layer must hold for its strength to be sampled."""
 STEP = 0.03
 """Relative change of a quantity for its slope."""
+KNOWN = 1.0 / 3.0
+"""Standard error of a slope, relative to the slope, beyond which half-widths by it mean nothing."""
 LEAST = 4.0
 """Expected number of independent contacts in a record, or of times without contact, below which it
 tells too little."""
@@ -59,11 +63,15 @@ class Slopes(NamedTuple):
         Shape (P,), at each operating point.
     by_film, by_layer : numpy.ndarray
         Slopes of its logarithm over those of the film thickness and of the layer's strength.
+    film_error, layer_error : numpy.ndarray
+        Their standard errors.
     """
 
     probability: Array
     by_film: Array
     by_layer: Array
+    film_error: Array
+    layer_error: Array
 
 
 def slopes(pair: RoughPair, film: xr.Dataset, threads: int | None = None) -> Slopes:
@@ -87,11 +95,12 @@ def slopes(pair: RoughPair, film: xr.Dataset, threads: int | None = None) -> Slo
     def sampled(thicker, weaker):
         changed = film.assign(film_thickness=film["film_thickness"] * thicker)
         windows = ContactWindows(pair.spec, changed, pair.layer, pair.gap, weaker)
-        return windows.on_pairs(pair.spec, pair.seed, PAIRS, threads)[:, 1].mean(axis=0)
+        return windows.on_pairs(pair.spec, pair.seed, PAIRS, threads)[:, 1]
 
-    changed = [sampled(*change) for change in zip(_THICKER, _WEAKER, strict=True)]
+    changed = np.stack([sampled(*one) for one in zip(_THICKER, _WEAKER, strict=True)], axis=1)
     # An estimate of the probability may exceed one.
-    return Slopes(np.minimum(sampled(1.0, 1.0), 1.0), *_slopes(*changed))
+    share = np.minimum(sampled(1.0, 1.0).mean(axis=0), 1.0)
+    return Slopes(share, *_slopes(changed.mean(axis=0), left_out(changed, lambda mean: mean)))
 
 
 def line_ratios(
@@ -193,20 +202,28 @@ def on_surfaces(
     wanted = films.copy(data=np.reshape([tells, tells, holds, holds], films.shape))
     changed = {"thicker": np.repeat(_THICKER, share.size), "weaker": np.repeat(_WEAKER, share.size)}
     film = film.assign(film_thickness=films)
-    found = surface_contact(pair, film, threads, fewer=FEWER, wanted=wanted, **changed)
+    found = surface_contact(
+        pair, film, threads, fewer=FEWER, wanted=wanted, left_out=True, **changed
+    )
     changed = found["breakthrough_probability"].values.reshape(len(_THICKER), -1)
+    without = found[WITHOUT].values.reshape(-1, *changed.shape)
     with np.errstate(divide="ignore", invalid="ignore"):
         groups, own = -np.log1p(-changed), -np.log1p(-share) * (1.0 - share) / share
-    by_film, by_layer = (own * each for each in _slopes(*groups))
-    by_layer = np.where(tells == holds, by_layer, 0.0)
-    return Slopes(share, by_film, by_layer), size, ratios
+    by_film, by_layer, film_error, layer_error = (own * each for each in _slopes(groups, without))
+    by_layer, layer_error = np.where(tells == holds, [by_layer, layer_error], 0.0)
+    return Slopes(share, by_film, by_layer, film_error, layer_error), size, ratios
 
 
-def _slopes(thicker, thinner, stronger, weaker):
-    """Slopes by film and by layer, from values sampled with the same random numbers."""
+def _slopes(changed, without):
+    """Slopes by film and by layer and their errors, from values with the same random numbers.
+
+    The values have the shape (4, P), and (samples, 4, P) without each of the samples.
+    """
     across = np.log((1.0 + STEP) / (1.0 - STEP))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.log(thicker / thinner) / across, np.log(stronger / weaker) / across
+        slopes = np.log(changed[::2] / changed[1::2]) / across
+        each = np.log(without[:, ::2] / without[:, 1::2]) / across
+        return *slopes, *jackknife_error(each)
 
 
 def film_by_coefficient(
@@ -349,9 +366,12 @@ def half_widths(found: Slopes, by_coefficient: Array, error: Array, realisations
     -------
     numpy.ndarray
         Shape (quantities, records, P); NaN where a record tells nothing, or less than that the
-        quantity is between zero and twice its value.
+        quantity is between zero and twice its value, or where the slope is not known to `KNOWN`.
     """
-    each = np.array([found.by_film, found.by_film * by_coefficient, found.by_layer])
+    film, layer = np.abs([found.by_film, found.by_layer])
+    slopes = np.array([film, film * np.abs(by_coefficient), layer])[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        widths = quantile(realisations) * error / np.abs(each)[:, None]
-    return np.where(widths < 1.0, widths, np.nan)
+        of_film, of_layer = found.film_error / film, found.layer_error / layer
+        known = np.array([of_film, of_film, of_layer])[:, None] <= KNOWN
+        widths = quantile(realisations) * error / slopes
+    return np.where(known & (widths < 1.0), widths, np.nan)

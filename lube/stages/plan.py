@@ -78,6 +78,8 @@ def _expected(scatter, by_coefficient, unknown):
         "breakthrough_probability": found.probability,
         "slope_by_film": found.by_film,
         "slope_by_layer": found.by_layer,
+        "slope_by_film_error": found.film_error,
+        "slope_by_layer_error": found.layer_error,
         "film_by_coefficient": by_coefficient,
         "reading_error": read,
     }

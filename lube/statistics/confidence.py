@@ -333,13 +333,41 @@ def jackknife_interval(
     >>> [f"{x:.2f}" for x in jackknife_interval(np.array([1.0, 2.0, 3.0]), lambda mean: mean)]
     ['2.00', '0.58', '6.93']
     """
-    count = values.shape[0]
-    mean = mean_over_first(values)
-    without = np.stack([function((count * mean - one) / (count - 1)) for one in values])
-    error = np.sqrt((count - 1) * mean_over_first(np.square(without - mean_over_first(without))))
-    result = function(mean)
-    factor = np.exp(_student(count) * error / np.where(result > 0.0, result, 1.0))
+    error = jackknife_error(left_out(values, function))
+    result = function(mean_over_first(values))
+    factor = np.exp(_student(values.shape[0]) * error / np.where(result > 0.0, result, 1.0))
     return result, result / factor, result * factor
+
+
+def left_out(values: Array, function: Callable[[Array], Array]) -> Array:
+    """Compute a function of the mean of values with each of them left out once.
+
+    Parameters
+    ----------
+    values, function
+        As in `jackknife_interval`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (R, ...), of the function's results.
+    """
+    count, mean = values.shape[0], mean_over_first(values)
+    return np.stack([function((count * mean - one) / (count - 1)) for one in values])
+
+
+def jackknife_error(without: Array) -> Array:
+    """Find the standard error of a result from the results without each value, shape (R, ...).
+
+    The equation is that of `jackknife_interval`.
+
+    Examples
+    --------
+    >>> f"{jackknife_error(np.array([2.5, 2.0, 1.5])):.3f}"
+    '0.577'
+    """
+    deviation = without - mean_over_first(without)
+    return np.sqrt((without.shape[0] - 1) * mean_over_first(np.square(deviation)))
 
 
 def _student(count):

@@ -91,12 +91,28 @@ def test_a_shorter_record_and_a_worse_reading_tell_less():
 
 
 def test_intervals_scale_with_the_error_and_without_a_slope_there_is_none():
-    some = Slopes(np.array([0.1, 0.1]), np.array([-4.0, 0.0]), np.array([-0.5, -0.5]))
+    some = Slopes(*np.array([[0.1, 0.1], [-4.0, 0.0], [-0.5, -0.5], [0.1, 0.1], [0.1, 0.1]]))
     widths = half_widths(some, np.array([0.5, 0.5]), np.array([[0.1, 0.1]]), 64)[:, 0]
     assert widths[0, 0] == pytest.approx(quantile(64) * 0.1 / 4.0)
     assert widths[1, 0] == pytest.approx(2.0 * widths[0, 0])
     assert np.isnan(widths[:2, 1]).all()
     assert widths[2] == pytest.approx(quantile(64) * 0.1 / 0.5)
+
+
+def test_where_a_slope_may_be_noise_there_is_no_interval():
+    errors = [[0.2, 0.2], [0.1, 0.2]]
+    some = Slopes(*np.array([[0.1, 0.1], [-4.0, -0.5], [-0.5, -0.5], *errors]))
+    widths = half_widths(some, np.array([0.5, 0.5]), np.array([[0.1, 0.1]]), 64)[:, 0]
+    np.testing.assert_array_equal(np.isnan(widths), [[False, True], [False, True], [False, True]])
+
+
+def test_slopes_scatter_between_seeds_as_their_errors_say(spec, film, layer):
+    some = [slopes(RoughPair(spec, LENGTH, layer, seed), film) for seed in range(12)]
+    for values, errors in (("by_film", "film_error"), ("by_layer", "layer_error")):
+        scatter = np.std([getattr(one, values) for one in some], axis=0, ddof=1)
+        expected = np.sqrt(np.mean([getattr(one, errors) ** 2 for one in some], axis=0))
+        # Three standard errors of a scatter from twelve.
+        np.testing.assert_allclose(scatter, expected, rtol=3.0 / np.sqrt(2.0 * 11))
 
 
 def test_films_read_from_single_pairs_scatter_as_expected(spec, film, layer, found):
