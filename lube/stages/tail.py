@@ -225,7 +225,8 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Each variable without pair, and its ``_lower`` and ``_upper``.
+        Each variable without pair, and its ``_lower`` and ``_upper``. A rate is NaN where there are
+        breakthroughs, but the beginning of none was sampled.
     """
     limited = {}
     for name, of_pairs in values.items():
@@ -236,7 +237,10 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
     limits = xr.Dataset(limited, attrs=values.attrs)
     breakthrough, contact = (limits[f"{name}_upper"] for name in PROBABILITIES)
     most = breakthrough_limit(breakthrough, contact, WINDOWS * values.sizes["pair"])
-    return limits.assign(breakthrough_probability_upper=breakthrough.copy(data=most))
+    known = (limits["breakthrough_probability"] == 0.0) | (limits.get("breakthrough_rate", 1.0) > 0)
+    changed = {name: each.where(known) for name, each in limits.items() if "_rate" in name}
+    changed["breakthrough_probability_upper"] = breakthrough.copy(data=most)
+    return limits.assign(changed)
 
 
 def why_counted(spec: LineSpec, gap: Gap) -> str:
@@ -279,10 +283,8 @@ def _table(pair, film, of_pairs, runs, slide_to_roll_ratio):
     spec, slip = pair.spec, xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
     rolling = of_pairs.map(_in_pure_rolling)
     in_window, rate = _in_time(pair, film, runs, slip)
-    if not pair.gap.is_uniform:  # a rate is not known of breakthroughs none of which begins
-        begin = rate.mean("pair") > 0.0
-        rate = rate.where(begin | (of_pairs["breakthrough_probability"].mean("pair") == 0.0))
-    of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
+    limits = pair_limits((of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate))
+    rate = rate.where(limits["breakthrough_rate"].notnull())
     turn = _turn(spec.points[0] * spec.spacing, film["entrainment_speed"], slip)
     duration = in_window.mean("pair") / rate.mean("pair")
     if pair.gap.is_uniform:
@@ -291,7 +293,7 @@ def _table(pair, film, of_pairs, runs, slide_to_roll_ratio):
         turns, lasting = map(_in_pure_rolling, (turn, duration))
         in_a_revolution = _by_groups(pair_limits(rolling), turns / lasting, turns)
     table = {
-        **pair_limits(of_pairs),
+        **limits,
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": duration,
         **in_a_revolution,

@@ -418,6 +418,13 @@ def test_in_uneven_windows_a_rate_is_unknown_if_no_breakthrough_begins(coarse, s
         assert found[name].isnull().squeeze().values.tolist() == [True, False]
 
 
+def test_under_flat_films_a_rate_is_unknown_if_only_pieces_break_that_edges_cut_off(make_tail, few):
+    found = make_tail(few, shear_strength=1e7)
+    assert (found["breakthrough_probability"] > 0.0).all()
+    for name in ("breakthrough_rate", "breakthrough_rate_upper", "breakthroughs_per_revolution"):
+        assert found[name].isnull().all()
+
+
 # --- Lines that are not Gaussian ---------------------------------------------------------
 
 
