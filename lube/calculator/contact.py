@@ -107,8 +107,9 @@ def contact_probability(
         sampling are ``tail_breakthrough_probability``, ``tail_geometric_contact_probability`` and
         ``tail_breakthrough_rate``, breakthroughs per hour, each with ``_lower`` and ``_upper``.
         Pieces of runs that the edges of the contact cut off add to the probability but not to the
-        rate, which is NaN where nothing else was found to break. All are NaN where the heights are not Gaussian, or the formula flattens them; then the
-        attribute ``remarks`` says so, before the remarks of `film`.
+        rate, which is NaN where nothing else was found to break. All are NaN where the heights are
+        not Gaussian, or the formula flattens them; then the attribute ``remarks`` says so, before
+        the remarks of `film`.
 
         With `bands` also ``assumed_breakthrough_probability_lower`` and ``_upper``, between which
         90 % of the means over pairs lie, by the first film formula and contact model unless
