@@ -18,7 +18,7 @@ import xarray as xr
 from lube.errors import DataError
 from lube.grid.operating_points import surface_speeds
 from lube.schema import LIMITS, MEAN_LIMITS, label, values_with_limits
-from lube.statistics.confidence import mean_over_first, probability_interval
+from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits
 from lube.statistics.sample_size import effective_sample_size, independent_windows
 from lube.types import Array, Values
@@ -179,13 +179,18 @@ def with_pair_limits(dataset: xr.Dataset, windows: xr.DataArray) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The same, and ``breakthrough_probability_pair_lower`` and ``_pair_upper``.
+        The same, and ``breakthrough_probability_pair_lower`` and ``_pair_upper``, which hold the
+        interval of the mean.
     """
     shares = dataset["breakthrough_probability"]
-    size, mean = sample_size(shares, windows), mean_over_first(shares.values)
-    limits = zip(LIMITS[1:], prediction_limits(mean, size, 1.0, len(shares)), strict=True)
+    size, windows = sample_size(shares, windows), _at_each(windows, shares)
+    mean, *of_mean = probability_interval(shares.values, windows)
+    lower, upper = prediction_limits(mean, size, 1.0, len(shares))
+    # What a few realisations have not shown is unknown of one pair, too.
+    limits = np.fmin(lower, of_mean[0]), np.fmax(upper, of_mean[1])
     name, dims = "breakthrough_probability_pair", shares.dims[1:]
-    return dataset.assign({f"{name}{end}": (dims, limit) for end, limit in limits})
+    ends = zip(LIMITS[1:], limits, strict=True)
+    return dataset.assign({f"{name}{end}": (dims, limit) for end, limit in ends})
 
 
 def sample_size(shares: xr.DataArray, windows: xr.DataArray) -> Array:

@@ -144,7 +144,7 @@ def _register(thickness, source, remark, **limits):
 @_register(
     "central",
     "the paper, Eq. 3",
-    "-7 to +13 %; 2.4 % above pan-hamrock: two digits are transposed in print",
+    "-7 to +13 %; 2.4 % above pan-hamrock: one digit is misprinted",
     moes_load=(1.5, 100.0),
 )
 def paper(load: Values, speed: Values, material: Values) -> Values:

@@ -100,21 +100,28 @@ def remarks(film: xr.Dataset, lines, rollers, models: Sequence[str] = ("line",))
     at which steel begins to yield.
     """
     film = film.isel(film_formula=0, missing_dims="ignore")
+    found = _beyond_model(film, rollers, _has_lines(lines, models)) | _unknown(film)
+    return [*unusual(film, lines, rollers, models), *_that_apply(found)]
+
+
+def _has_lines(lines, models):
     # No line stands for surfaces whose ridges run along rolling.
-    of_lines = "line" in models and lines.follows_rolling
-    found = _unusual(film, lines, rollers, of_lines) | _beyond_model(film, rollers, of_lines)
-    return [text for text, is_so in (found | _unknown(film)).items() if is_so]
+    return "line" in models and lines.follows_rolling
 
 
-def _unusual(film, lines, rollers, of_lines):
-    """Remarks on values that may be mistakes, each with whether it applies."""
+def _that_apply(found):
+    return [text for text, is_so in found.items() if is_so]
+
+
+def unusual(film: xr.Dataset, lines, rollers, models: Sequence[str] = ("line",)) -> list[str]:
+    """List those of the `remarks` that are on values that may be mistakes; for one film formula."""
     moduli = rollers.first.young_modulus, rollers.second.young_modulus
     widths, shortest = 2.0 * film["contact_half_width"], lines.shortest_wavelength
     width, widest = widths.min().item(), widths.max().item()
     pressure = film["hertz_pressure"].max().item()
     films = film["film_thickness"]
     waves, points = width / shortest, shortest / lines.spacing
-    return {
+    found = {
         f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel "
         "210 GPa": min(moduli) < 1e9 or max(moduli) > 1.2e12,
         f"Hertz pressure: up to {with_unit(pressure, 'Pa', 3)}; gears and bearings have less than "
@@ -130,8 +137,9 @@ def _unusual(film, lines, rollers, of_lines):
         f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "
         "boundary layer breaks, so contact will be underestimated": shortest > 5e-6,
         f"grid: {points:.3g} points in the shortest wave; the curvature of asperities needs "
-        "10": of_lines and points < 10.0 * (1.0 - 1e-6),
+        "10": _has_lines(lines, models) and points < 10.0 * (1.0 - 1e-6),
     }
+    return _that_apply(found)
 
 
 def _beyond_model(film, rollers, of_lines):

@@ -108,4 +108,4 @@ def _gains(shown, factors, conditions):
     gains = narrowing(shown, measurable).transpose("point", "factor").values
     for gain, where in zip(gains, conditions, strict=True):
         if gain.max() > 0.0:
-            yield f"the {spoken(measurable[gain.argmax()])} at {where}, by {percent(gain.max())}"
+            yield f"at {where} the {spoken(measurable[gain.argmax()])}, by {percent(gain.max())}"

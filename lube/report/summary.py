@@ -11,6 +11,7 @@ import xarray as xr
 from lube.grid import model_limits
 from lube.grid.levels import rolling
 from lube.grid.operating_points import by_contact_model
+from lube.grid.plausibility import unusual
 from lube.inference.surface_scatter import revolution_limits
 from lube.report.pages import render
 from lube.schema import LIMITS, MEAN_LIMITS, REGIMES, values_with_limits
@@ -89,6 +90,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         study=study,
         film=of_first,
         shortest=study.line_spec.shortest_wavelength,
+        unusual=unusual(of_first, study.line_spec, study.rough_rollers, study.contact_model),
         **_film(film, first),
         contacts={model: _contact(each.sel(first)) for model, each in contacts.items()},
         trends={model: _trends(each.sel(first)) for model, each in contacts.items()},
