@@ -156,8 +156,8 @@ class FilmSearch:
 
         ends = ratios[known[[0, -1]]]
         films = self.films(whole["contact_half_width"].item(), points_at, table_at, ends)
-        thickness, levels = whole["film_thickness"].values[known], levels[known]
-        reached = _reached(films, thickness, levels, tried, is_rising)
+        thickness = whole["film_thickness"].values[known]
+        reached = _reached(films, thickness, levels[known], tried, is_rising)
         return films, reached, table_at(np.clip(films["lambda_ratio"][:1], *ends))
 
     def films(self, half_width, points_at, table_at=None, ends=(0.0, np.inf), factor_at=None):

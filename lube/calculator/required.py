@@ -286,7 +286,8 @@ def required_temperature(
     Answer
         ``temperature`` (degC) and the variables of `required_film`, each with ``_lower`` and
         ``_upper``. Infinite if the film is still thick enough at the oil's highest temperature; a
-        film with a shape, or with a deformed roughness, is then 0, as none thinner is known.
+        film with a shape, or with a deformed roughness, is then 0, as none thinner is known. A
+        limit is minus infinity if no temperature of the oil is low enough for it.
 
     Raises
     ------

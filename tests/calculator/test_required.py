@@ -422,6 +422,14 @@ def test_conditions_without_a_known_film_are_refused_in_one_line(rollers, monkey
         lube.required_temperature(*given, film_formula="computed", **FEW)
 
 
+def test_remarks_on_a_temperature_are_on_the_film_found(rollers, oil, monkeypatch):
+    tables = []
+    monkeypatch.setattr(required, "labelled", lambda found, film, *_: tables.append((found, film)))
+    lube.required_temperature(rollers, oil, **without("temperature"), **FEW)
+    [(found, film)] = tables
+    assert film["lambda_ratio"].item() == pytest.approx(found["lambda_ratio"][0], rel=1e-3)
+
+
 @pytest.mark.parametrize("model", ["line", "surface"])
 def test_answers_have_the_remarks_of_the_probability_at_the_film_found(oil, model):
     light, choices = POINT | {"force": "10 N"}, {"contact_model": model, **ONE}

@@ -41,9 +41,9 @@ def test_points_without_a_film_are_left_out():
 
 
 def test_what_to_measure_first_is_said_with_what_it_gains():
-    last = rests_on(STUDY, dataset()).strip().splitlines()[-1]
-    assert "the temperature at 400 N, 85.71 r/min, 40 °C, by 26.4 %" in last
-    assert "the temperature at 100 N, 85.71 r/min, 40 °C, by 8.95 %" in last
+    *_, last = rests_on(STUDY, dataset()).partition("Measure first")
+    assert "- at 400 N, 85.71 r/min, 40 °C the temperature, by 26.4 %" in last
+    assert "- at 100 N, 85.71 r/min, 40 °C the temperature, by 8.95 %" in last
     assert "contact model" not in last
 
 
@@ -54,7 +54,8 @@ def test_noise_is_no_finding():
         found[f"{name}_lower"] = found[f"{name}_lower"].where(~is_noise, 0.0)
     lines = rests_on(STUDY, found).strip().splitlines()
     assert "| temperature | 40 °C to 80 °C | -1 K to 1 K | assumed | 4 | – | – |" in lines
-    assert lines[-1].endswith("the temperature at 400 N, 85.71 r/min, 40 °C, by 26.4 %.")
+    assert lines[-1] == "- at 400 N, 85.71 r/min, 40 °C the temperature, by 26.4 %"
+    assert lines[-2] == ""  # no other point
 
 
 def test_each_contact_model_and_records_without_interval_are_said():
