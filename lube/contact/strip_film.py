@@ -282,10 +282,9 @@ class StripFilm:
         square = self._moments_at(spec, position)[..., 0, 0].sum(axis=0)
         return self.thickness(position), np.broadcast_to(np.sqrt(square), position.shape)
 
-    @functools.lru_cache(maxsize=1)  # noqa: B019 - of one strip at a time
     def _moments(self, spec):
         """Compute the `height_moments` in the gap, at `COLUMNS` columns."""
-        return self._moments_at(spec, self.middles)
+        return _moments_under_any_film(replace(self, thickness=None), spec)
 
     def _moments_at(self, spec, position):
         if not self.answers:
@@ -296,6 +295,11 @@ class StripFilm:
         """Moments of either surface in the gap."""
         each = enumerate(self.answers)
         return [moments_of(surface_waves(spec, one), answer, position) for one, answer in each]
+
+
+@functools.lru_cache(maxsize=1)  # of one strip at a time
+def _moments_under_any_film(strip, spec):
+    return strip._moments_at(spec, strip.middles)
 
 
 @functools.lru_cache(maxsize=1)

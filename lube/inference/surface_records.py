@@ -11,7 +11,7 @@ import xarray as xr
 
 from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import curvature_moments, surface_moments
-from lube.contact.surface_strip import mean_breaking_curvature, surface_contact
+from lube.contact.surface_strip import mean_breaking_curvature, strip_films, surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_responses
 from lube.inference.at_records import film_at_records
@@ -30,6 +30,9 @@ CURVE_FILMS = 8
 """Number of films of a curve at which contact is sampled."""
 CURVE_CONTACTS = 20.0, 1e-5
 """Contacts that theory expects in the strip under the thinnest and the thickest of these films."""
+ANCHORED = 0.9999
+"""Probability at the film of a record below which the number of contacts is known well enough to
+correct the curve by it."""
 LAYER_FILMS = [1, 3, 5]
 """Numbers of those of these films at which contact with other boundary layers is sampled."""
 LAYER_SHARES = 0.9, 0.5, 0.2, 0.05
@@ -73,7 +76,7 @@ def surfaces_at_records(
     """
     experiment, first = inputs["experiment"], films.isel(film_formula=0)
     own, parts = _at_films(study, first, inputs, threads)
-    ratios, pair = _curve_ratios(study, first), RoughPair.of(study)
+    ratios, pair = _curve_ratios(study, first, parts), RoughPair.of(study)
     thickness = xr.DataArray(ratios, dims="curve_film") * first["composite_rms_roughness"].item()
     strengths = _layer_strengths(pair, first, thickness.median())
     scatter, curves = np.empty(own.shape[1]), np.empty((4, ratios.size, own.shape[1]))
@@ -86,6 +89,10 @@ def surfaces_at_records(
         some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
         found = _curves(study, some, pair.layer.strength / strengths, threads)
         curves[..., records], of_layers[..., records] = found
+    anchored = _anchored(curves, own[0], np.log(ratios), np.log(first["lambda_ratio"].values))
+    few = of_layers[strengths == pair.layer.strength]
+    of_layers = _with_groups(of_layers, _groups(anchored[0, LAYER_FILMS]) / _groups(few))
+    curves[:3] = anchored
     by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
     found = {
         "film_formula": films["film_formula"].values,
@@ -123,6 +130,31 @@ def _curves(study, films, weaker, threads):
     found, few = _sampled(study, films, threads, FEWER), films.isel(curve_film=LAYER_FILMS)
     of_layers = [_sampled(study, few, threads, LAYER_FEWER, one)[0] for one in weaker]
     return found, of_layers
+
+
+def _anchored(curves, own, log_ratios, log_own):
+    """Curves with as many groups of contacts at the film of each record as were sampled there.
+
+    A curve is sampled on the first of the same surfaces, so what it shows too much or too little
+    there it shows at other films, too. This corrects the error of interpolation as well.
+    """
+    factors = np.ones(own.size)
+    for record in np.flatnonzero((own > 0.0) & (own < ANCHORED)):
+        curve = contact_curve(log_ratios, curves[0, :, record], curves[3, :, record])
+        read = scipy.special.expit(curve.logit_at(log_own[record]))
+        factors[record] = _groups(own[record]) / _groups(read)
+    return _with_groups(curves[:3], factors)
+
+
+def _with_groups(shares, factors):
+    """Probabilities of some times as many groups of contacts; the same where this is not known."""
+    with np.errstate(invalid="ignore"):
+        return np.where(np.isfinite(factors), -np.expm1(-factors * _groups(shares)), shares)
+
+
+def _groups(shares):
+    with np.errstate(divide="ignore"):  # a probability of 1
+        return -np.log1p(-shares)
 
 
 def _by_formula(own, log_ratios, curves, films, has_shape):
@@ -184,14 +216,37 @@ def _numbers(study, contact):
     return np.stack([*limits, revolution_size(study.line_spec, contact)])
 
 
-def _curve_ratios(study, first):
-    """Lambda ratios of the curves, from theory for high, flat films."""
-    moments, ratios = surface_moments(study.line_spec), np.geomspace(1.0, 20.0, 400)
-    films = ratios * first["composite_rms_roughness"].item()
-    width = 2.0 * first["contact_half_width"].mean().item()
-    contacts = expected_contacts(films, moments, study.rollers.length, width)
-    ends = np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
-    return np.geomspace(*ends, CURVE_FILMS)
+def _curve_ratios(study, first, parts):
+    """Lambda ratios of the curves, from theory; the ends are those of the records furthest apart.
+
+    Under uneven films, and where the oil answers the surfaces, each record has its own contacts.
+    """
+    if study.gap.is_plain:
+        moments, ratios = surface_moments(study.line_spec), np.geomspace(1.0, 20.0, 400)
+        films = ratios * first["composite_rms_roughness"].item()
+        width = 2.0 * first["contact_half_width"].mean().item()
+        contacts = expected_contacts(films, moments, study.rollers.length, width)
+        ends = np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
+        return np.geomspace(*ends, CURVE_FILMS)
+    ends = np.concatenate([_curve_ends(study, films) for _, films in parts])
+    return np.geomspace(ends[:, 0].min(), ends[:, 1].max(), CURVE_FILMS)
+
+
+def _curve_ends(study, films):
+    """Lambda ratios between which theory expects `CURVE_CONTACTS`, shape (distinct records, 2)."""
+    some, _ = study_windows(study, films).distinct()
+    films, ratios, ends = films.isel(record=some), np.geomspace(0.5, 20.0, 12), []
+    strips = strip_films(RoughPair.of(study), films)
+    for strip, own in zip(strips, films["lambda_ratio"].values, strict=True):
+        if strip is not None:
+            changed = [strip.thicker(ratio / own) for ratio in ratios]
+            each = [one.contacts(study.line_spec, study.rollers.length).number for one in changed]
+            # Below the film with the most contacts these merge. The logarithm of rare ones is
+            # nearly linear in the square of the ratio.
+            most = np.maximum.accumulate(each[::-1])[::-1]
+            squares = np.interp(-np.log(CURVE_CONTACTS), -np.log(most), ratios**2)
+            ends.append(np.sqrt(squares))
+    return np.reshape(ends, (-1, 2))
 
 
 def _layer_strengths(pair, films, level):

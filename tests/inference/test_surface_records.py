@@ -7,11 +7,14 @@ import pytest
 import xarray as xr
 from experiments import experiment_of
 from made import made, on_few_surfaces
+from scipy.special import expit
 
 from lube.contact.rough_pair import RoughPair
-from lube.contact.surface_strip import surface_contact
+from lube.contact.surface_strip import strip_films, surface_contact
+from lube.grid.film_responses import with_surface_responses
 from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_records import (
+    CURVE_CONTACTS,
     LAYER_FILMS,
     _by_formula,
     reading_errors,
@@ -113,12 +116,24 @@ def test_curves_of_other_layers_are_those_of_studies_with_them(plain, found):
     other = study.model_copy(update={"boundary_layer": layer})
     changed = made(other, ("lubricant", "film", "areal"))
     _, direct = at_records(other, inputs | {"areal": changed["areal"]}, FORCES)
-    shares = stronger["layer_curve_probability"]
-    np.testing.assert_array_equal(shares, direct[CURVE].values[LAYER_FILMS])
+    # Both are corrected by the record's own contact, by one factor at all films.
+    groups = [stronger["layer_curve_probability"].values, direct[CURVE].values[LAYER_FILMS]]
+    ratios = np.divide(*map(np.log1p, np.negative(groups)))
+    np.testing.assert_allclose(ratios, np.broadcast_to(ratios[0], ratios.shape), rtol=1e-9)
+    np.testing.assert_allclose(ratios, 1.0, atol=0.1)
     # With the own layer the curve is as without others, and stronger ones break more rarely.
     by_layer = surfaces["layer_curve_probability"].values
-    np.testing.assert_array_equal(by_layer[0], surfaces[CURVE][LAYER_FILMS])
+    np.testing.assert_allclose(by_layer[0], surfaces[CURVE][LAYER_FILMS], rtol=1e-12)
     assert (np.diff(by_layer, axis=0) <= 0.0).all() and (by_layer[-1] < 0.6 * by_layer[0]).all()
+
+
+def test_at_the_film_of_a_record_its_curve_has_the_probability_of_the_record(found):
+    first, surfaces = found
+    curves = surface_curves(surfaces, first.expand_dims("film_formula"), False)
+    for curve, record in zip(curves.of_records, range(first.sizes["record"]), strict=True):
+        read = expit(curve.logit_at(np.log(first["lambda_ratio"].values[record])))
+        own = surfaces["breakthrough_probability"].values.reshape(-1, first.sizes["record"])[0]
+        assert read == pytest.approx(own[record], rel=1e-4)
 
 
 def test_a_share_of_a_curve_is_read_back_to_its_film(found):
@@ -210,3 +225,10 @@ def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_st
     for name in ("breakthrough_probability", CURVE):
         errors = [0.5 * (each[f"{name}_upper"] - each[name]) for each in (on_grid, beside)]
         assert (abs(on_grid[name] - beside[name]) < 3.0 * np.hypot(*errors) + 1e-3).all()
+    film = with_surface_responses(inputs).isel(film_formula=0, force=[0])
+    for row, expected in ((0, CURVE_CONTACTS[0]), (-1, CURVE_CONTACTS[1])):
+        ratio = on_grid["curve_lambda_ratio"].values[row]
+        thickness = ratio * film["composite_rms_roughness"] * xr.ones_like(film["film_thickness"])
+        (strip,) = strip_films(RoughPair.of(study), film.assign(film_thickness=thickness))
+        number = strip.contacts(study.line_spec, study.rollers.length).number
+        assert number == pytest.approx(expected, rel=0.1)

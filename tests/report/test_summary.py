@@ -285,7 +285,7 @@ def test_measured_records_are_not_called_simulated(study, results):
     assert "Against the measured records (3 records" in text and "simulated" not in text
     assert "contradict the model" not in text
     comparison["overlap_share"][:] = 0.5
-    for realisations, verdict in ((38, ", a range"), (39, ", so these records contradict the model.")):
+    for realisations, verdict in ((38, ", a range"), (39, ", so these records contradict")):
         some = study.model_copy(update={"realisations": realisations})
         text = findings(some, results | {"comparison": comparison})
         assert f"60 % to 100 % would{verdict}" in text
