@@ -517,7 +517,7 @@ class Study(StrictModel):
             if index is None:
                 raise ValueError(
                     f"traces.{number}.{variable}: got {wanted}, need one of the study's: "
-                    f"{', '.join(map(str, given))}"
+                    f"{', '.join(map(str, given))}; a study that gives no traces has its base's"
                 )
             found[variable] = given[index]
         return found
