@@ -18,7 +18,7 @@ from lube.calculator.oil import Oil
 from lube.calculator.rollers import Rollers
 from lube.contact.ensemble import with_limits, with_pair_limits
 from lube.contact.rough_pair import RoughPair
-from lube.contact.surface_strip import surface_contact
+from lube.contact.surface_strip import surface_contact, surface_widths
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
@@ -204,7 +204,7 @@ def contact_at(
 
 def _of_surface(pair, table, slip):
     """Contact of the surface at some films, by the names of `contact_probability`."""
-    found = surface_contact(pair, table, slide_to_roll_ratio=slip)
+    found = surface_contact(pair, table).assign(surface_widths(pair, table, slip))
     found = found.assign(surface_rates(found, table["entrainment_speed"]))
     share = [found[f"breakthrough_probability{end}"] for end in LIMITS]
     slips, ratio = xr.full_like(share[0], 1.0) * slip, np.ones(share[0].shape)

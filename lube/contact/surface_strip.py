@@ -14,7 +14,6 @@ across the strip.
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -49,7 +48,7 @@ AT_ONCE = 10
 again: what the oil adds to the covariances takes 5 to 40 MB a point."""
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
 _SAMPLED = [f"{name}{end}" for name in (*COUNTS, *COUNTS.values(), RATIO) for end in LIMITS]
-_VARIABLES = (*_EXPECTED, *_SAMPLED, "pair_deviation")
+_VARIABLES = (*_EXPECTED, *_SAMPLED, "passage_width", "pair_deviation")
 
 
 def surface_contact(
@@ -58,7 +57,6 @@ def surface_contact(
     threads: int | None = None,
     weaker: Values = 1.0,
     fewer: int = 1,
-    slide_to_roll_ratio: xr.DataArray | float = 0.0,
     wanted: xr.DataArray | None = None,
     thicker: Values = 1.0,
     left_out: bool = False,
@@ -79,15 +77,13 @@ def surface_contact(
         How many times weaker the boundary layer is, at all films or at each.
     fewer : int, optional
         How many times fewer surfaces are drawn than `SURFACES`, for a faster, less exact result.
-    slide_to_roll_ratio : xarray.DataArray or float, optional
-        For both widths, which also have its dimensions; by default pure rolling.
     wanted : xarray.DataArray, optional
         At which of the films contact is sampled, by default at all. The choice does not change the
         results there.
     thicker : float or numpy.ndarray, optional
         How many times thicker the films are under which contact is sampled, at all or at each. The
         surfaces, and how finely they are drawn, are those for the given films, so that contact
-        changes by the film alone; way and scatter are those under the given films too.
+        changes by the film alone; the scatter is that under the given films too.
     left_out : bool, optional
         Whether to return the results without each surface, too, from which the errors follow of
         what is made of several probabilities.
@@ -98,10 +94,9 @@ def surface_contact(
         ``geometric_contact_probability`` and ``breakthrough_probability``, the numbers ``contacts``
         and ``breakthroughs`` in the strip, and the part of its area where the layer is broken,
         ``breakdown_ratio``, each with ``_lower`` and ``_upper``; the numbers that theory expects,
-        ``expected_contacts`` and ``expected_breakthroughs``; the distance that the
-        rollers move while a contact is in the strip, ``passage_width`` (m), and while the layer of
-        a contact is broken, ``breakthrough_width`` (m); and the scatter of a pair's share of
-        breakthrough in a revolution of pure rolling, ``pair_deviation``, as
+        ``expected_contacts`` and ``expected_breakthroughs``; and in pure rolling the distance that
+        the rollers move while a contact is in the strip, ``passage_width`` (m), and the scatter of
+        a pair's share of breakthrough in a revolution, ``pair_deviation``, as
         `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film
         is not known or not wanted. With `left_out` also ``groups_without``, the number of groups
         of breakthroughs, -ln(1 - P), without each of the surfaces; its first dimension is surface.
@@ -136,20 +131,49 @@ def surface_contact(
         found[WITHOUT] = ("surface", *dims), without.reshape(-1, *shape)
     for name in (f"{RATIO}{end}" for end in LIMITS):
         found[name] = found[name] / (2.0 * half_width)
-    points = thickness.copy(data=np.arange(thickness.size).reshape(shape))
-    widths = partial(_widths, pair, strips, sharp, known & wanted)
-    widths = np.vectorize(widths, otypes=[float, float])
-    widths = xr.apply_ufunc(widths, slide_to_roll_ratio, points, output_core_dims=[(), ()])
-    return found.assign(dict(zip(("passage_width", "breakthrough_width"), widths, strict=True)))
+    return found
 
 
-def _widths(pair, strips, sharp, wanted, slip, point):
-    """Passage width and breakthrough width at an operating point, m; NaN where not wanted."""
-    if not wanted[point]:
-        return np.nan, np.nan
-    strip, spec, length = strips[point], pair.spec, pair.length
-    of_broken = strip.breakthrough_width(spec, length, sharp[point], slip)
-    return strip.passage_width(spec, length, slip), of_broken
+def surface_widths(
+    pair: RoughPair,
+    film: xr.Dataset,
+    slide_to_roll_ratio: xr.DataArray | float = 0.0,
+    wanted: xr.DataArray | None = None,
+) -> xr.Dataset:
+    """Find how far the rollers move while a contact, and while a broken layer, is in the strip.
+
+    Parameters
+    ----------
+    pair, film, wanted
+        As in `surface_contact`.
+    slide_to_roll_ratio : xarray.DataArray or float, optional
+        By default pure rolling.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``passage_width`` and ``breakthrough_width`` (m) over the dimensions of the films and of the
+        slip, NaN where the film is not known or not wanted.
+    """
+    strips, sharp = strip_films(pair, film), mean_breaking_curvature(pair, film)
+    thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    points = thickness.copy(data=np.arange(thickness.size).reshape(thickness.shape))
+
+    def widths(slip, point, is_wanted):
+        strip, spec = strips[point], pair.spec
+        if strip is None or not is_wanted:
+            return np.nan, np.nan
+        of_broken = strip.breakthrough_width(spec, pair.length, sharp, slip)
+        return strip.passage_width(spec, pair.length, slip), of_broken
+
+    found = xr.apply_ufunc(
+        np.vectorize(widths, otypes=[float, float]),
+        slide_to_roll_ratio,
+        points,
+        xr.DataArray(True) if wanted is None else wanted,
+        output_core_dims=[(), ()],
+    )
+    return xr.Dataset(dict(zip(("passage_width", "breakthrough_width"), found, strict=True)))
 
 
 def mean_breaking_curvature(pair: RoughPair, film: xr.Dataset) -> float:
@@ -202,6 +226,7 @@ def _contacts(pair, strips, changed, sharp, wanted, seeds, threads):
     expected, broken = (found[name] for name in _EXPECTED)
     for point in np.flatnonzero(wanted):
         expected[point], broken[point] = strips[point].expected(spec, length, sharp[point])
+        found["passage_width"][point] = strips[point].passage_width(spec, length)
     certain = expected > MANY
     most = np.where(expected > SEVERAL, strip_sampling.STRIPS // 2, strip_sampling.STRIPS)
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from lube.contact.rough_pair import RoughPair
-from lube.contact.surface_strip import surface_contact
+from lube.contact.surface_strip import surface_contact, surface_widths
 from lube.grid.film_responses import with_surface_responses
 from lube.schema import CONTACT_DIMS, label
 from lube.study.study import Study
@@ -64,7 +64,8 @@ def contact_of_surfaces(
     Returns
     -------
     xarray.Dataset
-        The variables of `lube.contact.surface_strip.surface_contact`, unlabelled.
+        The variables of `lube.contact.surface_strip.surface_contact` and `surface_widths` there,
+        unlabelled.
 
     Raises
     ------
@@ -78,8 +79,8 @@ def contact_of_surfaces(
         some = film.isel(film_formula=formulas)
         if some.sizes["film_formula"]:
             own = None if wanted is None else wanted.isel(film_formula=formulas)
-            choices = {"fewer": fewer, "slide_to_roll_ratio": levels, "wanted": own}
-            found.append(surface_contact(pair, some, threads, **choices))
+            contact = surface_contact(pair, some, threads, fewer=fewer, wanted=own)
+            found.append(contact.assign(surface_widths(pair, some, levels, own)))
     found = xr.concat(found, "film_formula", join="exact")
     # If the film is the same at all slips, so is the probability.
     return xr.broadcast(found.drop_attrs())[0].transpose(*CONTACT_DIMS).copy(deep=True)
