@@ -155,7 +155,7 @@ def test_the_answers_are_those_of_the_datasets(study, results):
         "1.2 percentage points too low; the rms difference is 2.4 points. 75 % of the records lie "
         "within their 95 % prediction intervals; with a correct model, 60 % to 100 % would, a "
         f"range that is too narrow from only {study.realisations} realisations.",
-        "beyond what the model is for:\n\n- contact width: 1.8 times the shortest wave at the",
+        "- **Contact width: 1.8 times the shortest wave at the smallest force; with less than 20",
         "has both limits for 1 of 3 records; contact is too rare, or the film among the study's "
         "thickest, for an upper limit in 1; contact is too frequent for a lower limit in 1.",
         "| normal force | 800 N: 0.01 %; 1600 N: 5.4 % |",
