@@ -67,6 +67,12 @@ than wide have 0.9."""
 LEAST_WAVES_OF_RING = 50
 """Fewest waves of a ring that counts for the `anisotropy`."""
 
+LEAST_TRANSFER = 0.05
+"""Waves of which the filters leave a smaller part of the power take no part in the fit of a lay."""
+
+LEAST_GAIN = 30.0
+"""Gain in the logarithm of the likelihood for which a map with a lay counts as blurred."""
+
 LEAST_RMS_HEIGHT = 1e-13
 """Least rms height, m, a thousandth of an atom: smoother heights are rounding errors."""
 
@@ -99,20 +105,20 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
     """
     finest = LEAST_POINTS_PER_WAVE * max(used_directions(surface.spacing, settings))
     shortest = max(finest, surface.resolution, settings.short_cutoff or 0.0)
+    cutoffs = settings.long_cutoff, settings.short_cutoff
     of_surface, lay = settings.texture != "along rolling", (1.0, 90.0)
     if surface.heights.ndim == 1:
         if settings.texture == "lay":
             raise DataError(f"{surface.name}: got a profile, need a map for the texture `lay`")
         bins = _profile_bins(surface, 2.0 * np.pi / shortest)
     else:
-        *bins, lay = _map_bins(surface, 2.0 * np.pi / shortest, settings.texture)
+        *bins, lay = _map_bins(surface, 2.0 * np.pi / shortest, settings.texture, cutoffs)
     wave_vector, density, estimates, inside, windowed = bins
     mean_square = np.mean(np.square(surface.heights))
     if wave_vector.size < 3 or mean_square < LEAST_RMS_HEIGHT**2 or not np.all(density > 0.0):
         raise DataError(f"{surface.name}: its spectrum is empty, need rough heights on more points")
     whole = windowed if settings.long_cutoff is None else mean_square
     density = with_power(wave_vector, density, estimates, whole - (windowed - inside))
-    cutoffs = settings.long_cutoff, settings.short_cutoff
     transfer = power_transfer(wave_vector, *cutoffs)
     if lay[0] > 1.0:
         transfer = _ring_transfer(surface, 2.0 * np.pi / shortest, cutoffs, lay)
@@ -250,18 +256,26 @@ def _profile_bins(surface, q_max):
     return middle, total / counts, estimates, *powers
 
 
-def lay_of_map(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]:
+def lay_of_map(
+    power: Array, lengths: Pair, q_max: float, cutoffs: tuple[float | None, float | None]
+) -> tuple[float, float]:
     r"""Fit the lay of a map, that is how an isotropic surface is stretched into it.
 
     The powers of the waves are exponentially distributed. Their mean is any function of the
-    wavenumber q' of the isotropic surface, a constant in each bin. The fit has the greatest
-    likelihood, the least :math:`\sum n \ln \bar P` over bins with n waves of the mean power
-    :math:`\bar P`.
+    wavenumber q' of the isotropic surface, a constant in each bin, times the part
+    :math:`t\, e^{-b q^2}` that the filters, and a blur by the instrument, leave of a wave of the
+    map. The fit of ratio, angle and b has the greatest likelihood, the least
+
+    .. math:: \sum n \ln \bar P - b \sum q^2
+
+    over bins with n waves, and with the mean :math:`\bar P` of :math:`P e^{b q^2} / t`.
 
     Parameters
     ----------
     power, lengths, q_max
         As in `anisotropy`.
+    cutoffs : tuple
+        As in `lube.surfaces.topography.power_transfer`.
 
     Returns
     -------
@@ -272,30 +286,40 @@ def lay_of_map(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]
     """
     _, direction = anisotropy(power, lengths, q_max)
     along, across = np.broadcast_arrays(*_wave_vectors(power, lengths))
+    square = (along**2 + across**2) / q_max**2
+    transfer = power_transfer(q_max * np.sqrt(square), *cutoffs)
     # The window blurs ridges longer than half of the map.
     ridges = np.abs(across * math.cos(direction) - along * math.sin(direction))
     used = ridges >= 2.0 * np.pi * LEAST_WAVES / min(lengths)
-    used &= (np.hypot(along, across) <= q_max) & (power > 0.0)
-    along, across, powers = along[used], across[used], power[used]
+    used &= (square <= 1.0) & (power > 0.0) & (transfer > LEAST_TRANSFER)
+    along, across, square = along[used], across[used], square[used]
+    powers = power[used] / transfer[used]
 
-    def misfit(lay):
-        own = unstretched(along, across, math.exp(abs(lay[0])), lay[1])
+    def misfit(lay, blur=0.0):
+        own, blur = unstretched(along, across, math.exp(abs(lay[0])), lay[1]), abs(blur)
         inside = (np.log10(own / own.min()) * BINS_PER_DECADE).astype(np.int64)
-        counts, total = np.bincount(inside), np.bincount(inside, powers)
+        counts, total = np.bincount(inside), np.bincount(inside, powers * np.exp(blur * square))
         filled = counts > 0
-        return np.sum(counts[filled] * np.log(total[filled] / counts[filled])) / powers.size
+        levels = np.sum(counts[filled] * np.log(total[filled] / counts[filled]))
+        return levels - blur * np.sum(square)
 
-    tried = [(math.log(ratio), math.degrees(direction) + 90.0) for ratio in (1.2, 3.0, 8.0, 20.0)]
-    begin = min(tried, key=misfit)
-    steps = np.array([begin, (begin[0] + 0.3, begin[1]), (begin[0], begin[1] + 5.0)])
-    options = {"initial_simplex": steps, "xatol": 1e-3, "fatol": 1e-9}
-    found = scipy.optimize.minimize(misfit, begin, method="Nelder-Mead", options=options).x
+    def least(function, starts, steps):
+        begin = np.array(min(starts, key=function))
+        simplex = begin + np.vstack([np.zeros(begin.size), np.diag(steps)])
+        options = {"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-9 * powers.size}
+        return scipy.optimize.minimize(function, begin, method="Nelder-Mead", options=options)
+
+    starts = [(math.log(ratio), math.degrees(direction) + 90.0) for ratio in (1.2, 3.0, 8.0, 20.0)]
+    sharp = least(misfit, starts, (0.3, 5.0))
+    starts = [(*lay, blur) for lay in (*starts, sharp.x) for blur in (0.3, 3.0)]
+    blurred = least(lambda lay: misfit(lay[:2], lay[2]), starts, (0.3, 5.0, 0.5))
+    found = blurred.x if blurred.fun < sharp.fun - LEAST_GAIN else sharp.x
     angle = (found[1] + 90.0) % 180.0 - 90.0  # ridges at 100 degrees are at -80
     # A rounded angle just below 0 is no "-0" in messages.
     return float(f"{math.exp(abs(found[0])):.3g}"), round(float(angle), 1) + 0.0
 
 
-def _map_bins(surface, q_max, texture):
+def _map_bins(surface, q_max, texture, cutoffs):
     """Means over rings of a map's waves, or over its waves of equal wave vector along rolling.
 
     The last value is the ratio and the angle of the lay.
@@ -304,7 +328,7 @@ def _map_bins(surface, q_max, texture):
     if texture == "along rolling":
         return *_column_means(power, surface.lengths[0], q_max), power.sum(), lay
     if texture == "lay":
-        lay = lay_of_map(power, surface.lengths, q_max)
+        lay = lay_of_map(power, surface.lengths, q_max, cutoffs)
         return *_ring_means(power, surface.lengths, q_max, *lay), power.sum(), lay
     measure, direction = anisotropy(power, surface.lengths, q_max)
     if measure > MOST_ANISOTROPY:

@@ -265,6 +265,20 @@ def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
             assert abs((found.lay_angle - angle + 90.0) % 180.0 - 90.0) < 1.0
 
 
+@pytest.mark.parametrize("ratio", [4.0, 8.0])
+def test_filters_and_blur_do_not_shorten_ridges(ratio):
+    """They take the same from all waves of one length, but the ridges' widths are their short ones."""
+    found = {"filtered": [], "blurred": []}
+    for seed in range(4):
+        surface, _ = stretched_map(ratio, 30.0, seed)
+        short = replace(LAY, short_cutoff=8 * surface.spacing[0])
+        found["filtered"].append(spectrum_of(surface, short).lay_ratio)
+        heights = scipy.ndimage.gaussian_filter(surface.heights, 1.3)
+        found["blurred"].append(spectrum_of(replace(surface, heights=heights), LAY).lay_ratio)
+    for ratios in found.values():
+        assert np.mean(ratios) == pytest.approx(ratio, rel=0.12)
+
+
 def test_ridges_along_rolling_are_not_at_minus_zero_degrees():
     surface, _ = stretched_map(5.0, 0.0, seed=5)
     assert str(spectrum_of(surface, LAY).lay_angle) == "0.0"
