@@ -180,11 +180,16 @@ def open_text(
         If there is no line of column names, or `lube.recordings.signals.find_signals` refuses it.
     """
     lines = _first_lines(path, skip or 0)
-    for line, (_, row, _) in pairwise(lines) if skip is None else ():
+
+    def names_columns(line, row, name):
         with suppress(DataError):
-            table = _table(path, *line, channel, unit)
-            if table.may_begin_with(row):
-                return table
+            return _table(path, *line, name, unit).may_begin_with(row)
+
+    following = list(pairwise(lines)) if skip is None else []
+    for name in (channel, None):  # a message about a wrong channel is about the same line
+        for line, (_, row, _) in following:
+            if names_columns(line, row, name):
+                return _table(path, *line, channel, unit)
     return _table(path, *lines[0], channel, unit)
 
 

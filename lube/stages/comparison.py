@@ -342,11 +342,19 @@ def _contradictions(tables):
 
 
 def _half_widths(table, contact_model, comparisons):
-    """Half-width of each prediction interval of the first formula, for many comparisons at once."""
+    """Half-width of the interval of each record's share, for many comparisons at once.
+
+    It is that of the prediction by the first formula, widened as pairs scatter at the share of the
+    record, if this is greater; and at least that of the record's own interval.
+    """
     name, count = "simulated_probability", SURFACES
     if contact_model == "line":
         name, count = "pooled_probability", table.sizes["realisation"]
     first = table.isel(film_formula=0)
     mean = first[name].values
     sides = [abs(first[f"predicted_share{side}"].values - mean) for side in LIMITS[1:]]
-    return np.maximum(*sides) * quantile(count, comparisons) / quantile(count)
+    share = first["measured_share"].values
+    own = [abs(first[f"measured_share{side}"].values - share) for side in LIMITS[1:]]
+    wider = np.sqrt(share * (1.0 - share) / np.maximum(mean * (1.0 - mean), 1e-6))
+    factor = np.fmax(wider, 1.0) * quantile(count, comparisons) / quantile(count)
+    return np.fmax(np.maximum(*sides) * factor, np.maximum(*own))

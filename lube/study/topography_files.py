@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from lube.errors import DataError, LubeError, located, shown
+from lube.errors import DataError, located, shown
 from lube.study.small_csv import read_cells, units_of
 from lube.surfaces.topography import Topography
 from lube.types import File
@@ -66,13 +66,14 @@ def _read_csv(path):
 
 def _row(path, number, cells):
     """Position and height of a line; a missing height is NaN."""
-    try:
-        position, height = cells
+    where = f"{path}: line {number}"
+    if len(cells) != 2:
+        came = " | ".join(cells)
+        raise DataError(f"{where}: got {len(cells)} cells, {shown(came)}, need position and height")
+    position, height = cells
+    with located(where, DataError):
         hole = height.lower() in ("", "nan")
         return parse_number(position), np.nan if hole else parse_number(height)
-    except (ValueError, LubeError):
-        came = f"line {number}: got {shown(','.join(cells))}"
-        raise DataError(f"{path}: {came}, need a position and a height") from None
 
 
 def _read_netcdf(path):

@@ -230,10 +230,18 @@ def test_records_of_one_point_that_contradict_each_other_are_named(at_point, cap
 
 def test_records_of_surfaces_that_scatter_more_than_lines_do_not_contradict(on_surfaces):
     point = {"force": 400.0, "speed": 60.0, "temperature": 60.0, "pair": ["1", "2"]}
-    near, far = (experiment_of([0.4, share], **point) for share in (0.44, 0.55))
-    assert "contradict each other: shares 0.4 and 0.44" in on_surfaces(near, ["line"]).remarks
+    near, far = (experiment_of([0.4, share], **point) for share in (0.468, 0.55))
+    assert "contradict each other: shares 0.4 and 0.468" in on_surfaces(near, ["line"]).remarks
     assert on_surfaces(near).remarks == ""
     assert "contradict each other: shares 0.4 and 0.55" in on_surfaces(far).remarks
+
+
+def test_records_that_agree_do_not_contradict_each_other_where_the_model_is_off(on_surfaces):
+    """Pairs scatter more at greater shares, and a record knows its share to its own interval."""
+    point = {"force": 100.0, "speed": 2000.0, "temperature": 60.0, "pair": ["1", "2"]}
+    close, apart = (experiment_of([0.10, share], **point) for share in (0.11, 0.9))
+    assert on_surfaces(close, ["line"]).remarks == ""
+    assert "contradict each other: shares 0.1 and 0.9" in on_surfaces(apart, ["line"]).remarks
 
 
 def test_records_that_may_differ_do_not_contradict_each_other(at_point, members, compared):

@@ -267,7 +267,7 @@ def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
 
 @pytest.mark.parametrize("ratio", [4.0, 8.0])
 def test_filters_and_blur_do_not_shorten_ridges(ratio):
-    """They take the same from all waves of one length, but the ridges' widths are their short ones."""
+    """They take most from the waves across ridges, which are the shortest."""
     found = {"filtered": [], "blurred": []}
     for seed in range(4):
         surface, _ = stretched_map(ratio, 30.0, seed)
