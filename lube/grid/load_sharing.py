@@ -9,7 +9,7 @@ import xarray as xr
 from lube.grid.film_profiles import shaping
 from lube.surfaces.contact_pressure import contact_pressure
 
-MOST = 0.95
+MOST = 0.999
 """Largest share that asperities may take of the load where it is shared with the oil."""
 ROUNDS, HALVINGS = 10, 40
 """How often the film is found anew at most, and halvings of the range of shares each time."""

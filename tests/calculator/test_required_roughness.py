@@ -78,7 +78,7 @@ def test_rollers_may_be_much_rougher_than_those_given(rollers, oil, busy):
 
 
 def test_no_film_is_known_of_rollers_whose_asperities_carry_nearly_all_of_the_load(rollers, oil):
-    message = "the asperities of such rough rollers carry more than 95 % of the load"
+    message = "the asperities of such rough rollers carry more than 99.9 % of the load"
     with pytest.raises(
         LubeError, match=f"^share: got 0.9, which no film is known to have: {message}"
     ):
