@@ -68,6 +68,8 @@ def band_in_words(rollers: RollerPair, roughness: Roughness, spec: LineSpec) -> 
         automatic = line.heights is None and own.longest_wavelength == AUTOMATIC_WAVELENGTH
         why = f" ({AUTOMATIC_WAVELENGTH})" if automatic else ""
         band = f"waves {with_unit(longest, 'm', 3)}{why} to {with_unit(shortest, 'm', 3)}"
+        if line.heights is not None:
+            band = f"waves of the measured profile, down to {with_unit(shortest, 'm', 3)}"
         if line.lay_ratio > 1.0:
             band += f" across ridges {line.lay_ratio:g} times longer, at {line.lay_angle:g} deg"
         if line.hurst_exponent is not None and (own.long_cutoff or own.short_cutoff):
