@@ -67,7 +67,7 @@ than wide have 0.9."""
 LEAST_WAVES_OF_RING = 50
 """Fewest waves of a ring that counts for the `anisotropy`."""
 
-LEAST_TRANSFER = 0.05
+LEAST_PART = 0.05
 """Waves of which the filters leave a smaller part of the power take no part in the fit of a lay."""
 
 LEAST_GAIN = 30.0
@@ -268,7 +268,8 @@ def lay_of_map(
 
     .. math:: \sum n \ln \bar P - b \sum q^2
 
-    over bins with n waves, and with the mean :math:`\bar P` of :math:`P e^{b q^2} / t`.
+    over bins with n waves, and with the mean :math:`\bar P` of :math:`P e^{b q^2} / t`. Unless this
+    gains more than `LEAST_GAIN`, b is 0.
 
     Parameters
     ----------
@@ -291,7 +292,7 @@ def lay_of_map(
     # The window blurs ridges longer than half of the map.
     ridges = np.abs(across * math.cos(direction) - along * math.sin(direction))
     used = ridges >= 2.0 * np.pi * LEAST_WAVES / min(lengths)
-    used &= (square <= 1.0) & (power > 0.0) & (transfer > LEAST_TRANSFER)
+    used &= (square <= 1.0) & (power > 0.0) & (transfer > LEAST_PART)
     along, across, square = along[used], across[used], square[used]
     powers = power[used] / transfer[used]
 
