@@ -52,7 +52,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     counts = {name: len(levels) for name, levels in study.operating_grid}
     counts["lubricant"] = len(study.lubricants)
     points = math.prod(counts.values())
-    usable, total, refused = _records(study)
+    usable, total, refused, of_records = _records(study)
     film, spec, rollers = _film(study), study.line_spec, study.rough_rollers
     summary = render(
         "check.txt",
@@ -69,6 +69,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
         notes=[
             *remarks(film, spec, rollers, study.contact_model),
             *_own_remarks(path, study, arguments["changes"]),
+            *of_records,
         ],
     )
     return summary.splitlines(), refused
@@ -135,27 +136,22 @@ def _minutes(study, points):
 
 
 def _records(study):
-    """Count the measured records that can be used, and all; and one line for each that cannot."""
+    """Evaluate the measured records as a run does.
+
+    Returns the numbers of those that can be used and of all, a line for each that cannot, and
+    remarks on the others.
+    """
     manifest = study.experiment.manifest
     if manifest is None or not study.has("experiment"):
-        return 0, 0, []
+        return 0, 0, [], []
     from lube.recordings.manifest import read_manifest
-    from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
+    from lube.stages.experiment import evaluated_records
 
-    content = read_manifest(manifest)
-    refused = [*content.refused]
-    for entry in content.entries:
-        try:
-            lubricant_of(entry, study)
-            for _ in unsaturated_pieces(open_entry(entry), study) if entry.file else ():
-                pass  # errors say what is wrong
-        except LubeError as error:
-            refused.append(str(error))
-    total = len(content.refused) + len(content.entries)
-    usable = total - len(refused)
-    if not usable:
+    rows, refused, notes = evaluated_records(read_manifest(manifest), study)
+    total = len(rows) + len(refused)
+    if not rows:
         refused.append(f"{manifest}: no record can be used, need at least one usable record")
-    return usable, total, refused
+    return len(rows), total, refused, notes
 
 
 def _last_run(results):

@@ -116,6 +116,29 @@ def measured_experiment(manifest: Manifest, study: Study) -> xr.Dataset:
     DataError
         If no record can be used.
     """
+    rows, refused, remarks = evaluated_records(manifest, study)
+    return _dataset(rows, study, manifest.origin, refused, remarks)
+
+
+def evaluated_records(manifest: Manifest, study: Study) -> tuple[list[dict], list[str], list[str]]:
+    """Evaluate the records of a list.
+
+    Parameters
+    ----------
+    manifest : Manifest
+        From `lube.recordings.manifest.read_manifest`.
+    study : Study
+        Its rig, which relates voltage and resistance, its rollers and its evaluation of records.
+
+    Returns
+    -------
+    rows : list of dict
+        Values of each record that can be used, by the variables' names in the ``experiment`` file.
+    refused : list of str
+        A line for each record that cannot be used.
+    remarks : list of str
+        A line for each record that was corrected or may be mistaken.
+    """
     rows, refused, remarks = [], list(manifest.refused), []
     for entry in manifest.entries:
         try:
@@ -136,7 +159,7 @@ def measured_experiment(manifest: Manifest, study: Study) -> xr.Dataset:
             f"{with_unit(time, 's', 3)} to move by the width of the contact: so short a record "
             "shows whether they touch at one place, and not how often"
         )
-    return _dataset(rows, study, manifest.origin, refused, remarks)
+    return rows, refused, remarks
 
 
 def _first_of(names):
@@ -173,11 +196,13 @@ def _row_of_entry(entry, study, remarks):
             f"{name}: its speed is stated as {conditions.speed:.6g} rpm, but it repeats itself at "
             f"{row['speed']:.6g} rpm, which is used instead"
         )
-    at = study.experiment.thresholds.index(study.experiment.threshold)
-    if recording.quantity == "voltage" and row["contact_share"][at] == 1.0:
+    always = np.array(study.experiment.thresholds)[row["contact_share"] == 1.0]
+    if recording.quantity == "voltage" and always.size:
         remarks.append(
-            f"{name}: reads as contact all the time, which it also does if its bias voltage is "
-            f"less than rig.bias_voltage, {with_unit(study.rig.bias_voltage, 'V')}"
+            f"{name}: reads as contact all the time by thresholds from "
+            f"{with_unit(always[0], 'ohm')} on, which it also does if the recorder cuts its "
+            "voltage off, or if its bias voltage is less than rig.bias_voltage, "
+            f"{with_unit(study.rig.bias_voltage, 'V')}"
         )
     return row | {"record": name}
 

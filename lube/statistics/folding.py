@@ -220,9 +220,10 @@ def _profile(shares, interval, period):
 def _share_error(shares, interval, period):
     """Calculate the standard error of the share from the scatter between whole revolutions."""
     _, turn, _ = phases_of_blocks(shares.size, interval, period)
-    whole = int(shares.size * interval / period)
-    if whole < 2:
+    inside = turn < int(shares.size * interval / period)
+    blocks = np.bincount(turn[inside])
+    seen = blocks > 0  # samples may be further apart than a turn
+    if np.count_nonzero(seen) < 2:
         return 0.0
-    inside = turn < whole
-    each = np.bincount(turn[inside], shares[inside]) / np.bincount(turn[inside])
-    return np.std(each, ddof=1) / np.sqrt(whole)
+    each = np.bincount(turn[inside], shares[inside])[seen] / blocks[seen]
+    return np.std(each, ddof=1) / np.sqrt(each.size)

@@ -159,7 +159,9 @@ def test_each_record_is_read_and_refused_as_by_the_workflow(tmp_path, capsys):
     assert "gap.csv: line 6: time goes from 3 s to 7 s" in second
     assert "saturated.csv: saturated, 33.3% of its samples" in third
     assert "records.csv: line 5: mobilgear-shc-xmp-320: got 10 degC" in fourth
-    assert "2 of the 6 in records.csv can be used" in "\n".join(check_study("mine.yaml")[0])
+    summary = "\n".join(check_study("mine.yaml")[0])
+    assert "2 of the 6 in records.csv can be used" in summary
+    assert "Remark: good.csv (records.csv: line 2): reads as contact all the time" in summary
 
 
 def test_a_list_without_usable_records_is_refused(tmp_path):

@@ -400,6 +400,17 @@ def test_a_record_below_another_bias_voltage_reads_as_contact_with_a_remark(meas
     assert measured("volts.csv,800,100,40").remarks == ""
 
 
+def test_a_voltage_that_is_cut_off_reads_as_contact_by_the_higher_thresholds_alone(
+    measured, tmp_path
+):
+    """A recorder that ends at 40 mV shows no more than 400 ohm behind 100 ohm at 50 mV."""
+    volts = np.minimum(np.where(np.arange(1000) % 4, 0.05, 0.001), 0.04)
+    written(tmp_path / "volts.csv", volts, head="U [V]")
+    here = measured("volts.csv,800,100,40")
+    assert here["contact_share"].values[0].tolist() == [0.25, 0.25, 1.0]
+    assert "by thresholds from 1 kΩ on, which it also does if the recorder" in here.remarks
+
+
 def test_no_record_at_all_is_an_error(measured):
     with pytest.raises(DataError, match=r"no record can be used, .*; the first: .*broken.csv"):
         measured("broken.csv,800,100,40")

@@ -116,3 +116,8 @@ def test_the_error_of_the_share_is_the_scatter_of_whole_turns():
     assert fold(record, 1.0, 100.0).share_error == pytest.approx(expected)
     # One whole turn has no scatter.
     assert fold(np.random.default_rng(5).random(199), 1.0, 100.0).share_error == 0.0
+
+
+def test_samples_further_apart_than_a_turn_scatter_as_the_turns_that_they_fall_in():
+    record = np.random.default_rng(6).random(50)
+    assert fold(record, 1.0, 0.6).share_error == pytest.approx(record.std(ddof=1) / np.sqrt(50.0))
