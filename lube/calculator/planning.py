@@ -25,8 +25,8 @@ from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.grid.operating_points import surface_speeds
 from lube.inference import planning
-from lube.physics.electrical import film_capacitance
-from lube.rig.readings import READINGS, read_shares
+from lube.physics.electrical import film_capacitance, mean_inverse_gap, surrounding_capacitance
+from lube.rig.readings import READINGS, mean_shares
 from lube.rig.simulator import Revolution
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.study.uncertainty import CHOICES
@@ -213,7 +213,7 @@ def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):
 
     Shape (thresholds, points).
     """
-    film, half_width = table["film_thickness"], table["contact_half_width"]
+    film = table["film_thickness"]
     if rig is None:
         return np.zeros((thresholds.size, film.size))
     if rig not in PRESETS:
@@ -229,14 +229,14 @@ def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):
         )
     windows = ContactWindows(spec, table, rollers.layer, gap)
     traces = windows.trace(draw_realisation(spec, seed, RIG_REALISATIONS), slip)
-    plates = film_capacitance(film, half_width, rollers.pair.length, known.oil_permittivity)
+    capacitance = _capacitance(rollers, table, windows, known.oil_permittivity)
     steps = spec.spacing / np.maximum(*surface_speeds(table["entrainment_speed"], slip))
-    of_points = (each.transpose(*film.dims).values.ravel() for each in xr.broadcast(steps, plates))
+    steps = steps.broadcast_like(film).transpose(*film.dims).values.ravel()
     resistance = rollers.resistivity / spec.spacing
     errors = np.full((thresholds.size, len(traces)), np.nan)
-    for number, (contact, step, plate) in enumerate(zip(traces, *of_points, strict=True)):
-        revolution = Revolution(contact, step, resistance, plate, (seed, 0))
-        shares, by_threshold = read_shares(revolution.voltage(known), experiment, known)
+    for number, (contact, step, one) in enumerate(zip(traces, steps, capacitance, strict=True)):
+        revolution = Revolution(contact, step, resistance, one, (seed, 0))
+        shares, by_threshold = mean_shares(revolution, experiment, known)
         read = dict(zip(READINGS, shares, strict=True)) | {"threshold": by_threshold[place.ravel()]}
         if true := np.count_nonzero(contact) / contact.size:
             errors[:, number] = np.abs(read[PRESETS[rig].reading] / true - 1.0)
@@ -244,3 +244,16 @@ def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):
     seen = np.isfinite(errors)
     mean = errors.sum(axis=1, where=seen, keepdims=True) / np.maximum(seen.sum(axis=1)[:, None], 1)
     return np.where(seen, errors, mean)
+
+
+def _capacitance(rollers, table, windows, oil):
+    """Capacitance of each rough contact and of the gap beside it, F; shape (points,)."""
+    names = "film_thickness", "contact_half_width", "reduced_radius"
+    film, *dry = xr.broadcast(*(table[name] for name in names))
+    film, half_width, radius = (each.transpose(*film.dims).values.ravel() for each in (film, *dry))
+    spec, layer, length = rollers.lines, rollers.layer.critical_thickness, rollers.pair.length
+    gaps = [gap or (np.nan, np.nan) for gap in windows.gaps(spec)]  # if the film is not known
+    gaps = [np.multiply(gap, spec.height_step) for gap in gaps]
+    read = [1.0 / mean_inverse_gap(*gap, layer).mean() for gap in gaps]
+    plates = film_capacitance(np.array(read), half_width, length, oil)
+    return plates + surrounding_capacitance(film, half_width, radius, length, oil)

@@ -273,7 +273,8 @@ def relative_error(
         Variance v of the record's share over that of a revolution, at all points or at each.
     reading : numpy.ndarray or float, optional
         Relative error r of the rig's reading. It is a bias, the same in every record, seen on one
-        simulated pair. It is added as if it were random, with either sign.
+        simulated pair. It is added as if it were random, with either sign. What single samples miss
+        by chance is no part of it.
 
     Returns
     -------

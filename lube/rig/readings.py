@@ -4,6 +4,7 @@ import numpy as np
 
 from lube.physics.electrical import divider_voltage
 from lube.rig.contact_share import record_counter
+from lube.rig.simulator import Revolution
 from lube.study.rig_settings import Experiment, Rig
 from lube.types import Array
 
@@ -14,6 +15,38 @@ meter shows it."""
 HIGHEST = 0.99
 """The highest voltage is the one that this part of the record lies below, because of the noise."""
 _BINS = 20_000
+_BEGINNINGS = 8
+"""Most instants at which sampling of one revolution begins, for `mean_shares`."""
+
+
+def mean_shares(
+    revolution: Revolution, experiment: Experiment, rig: Rig
+) -> tuple[list[float], Array]:
+    """Read contact shares from one revolution, on average over when sampling begins.
+
+    A record of rare contact has few samples in contact: it may read a tenth more or less by chance.
+    What remains on average is the rig's own error.
+
+    Parameters
+    ----------
+    revolution : Revolution
+        Of the simulated rig.
+    experiment, rig
+        As for `read_shares`.
+
+    Returns
+    -------
+    shares, by_threshold
+        As from `read_shares`.
+    """
+    steps_per_sample = 1.0 / (rig.sampling_rate * revolution.time_step)
+    beginnings = int(np.clip(steps_per_sample, 1, _BEGINNINGS))
+    faster = rig.model_copy(update={"sampling_rate": beginnings * rig.sampling_rate})
+    voltage = revolution.voltage(faster)
+    records = [voltage[first::beginnings] for first in range(min(beginnings, voltage.size))]
+    read = zip(*(read_shares(record, experiment, rig) for record in records), strict=True)
+    shares, by_threshold = (np.mean(each, axis=0) for each in read)
+    return shares.tolist(), by_threshold
 
 
 def read_shares(voltage: Array, experiment: Experiment, rig: Rig) -> tuple[list[float], Array]:

@@ -1,5 +1,6 @@
 """The electrical stage: what electrical meters read at every operating point."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -13,7 +14,7 @@ from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip, known_films, operating_points
 from lube.physics import electrical
-from lube.rig.readings import READINGS, read_shares
+from lube.rig.readings import READINGS, mean_shares
 from lube.rig.simulator import simulated_revolutions
 from lube.schema import POINT_DIMS, label, values_with_limits, with_dims
 from lube.study.rig_settings import OWN_RIG, PRESETS
@@ -47,7 +48,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = film.transpose(*POINT_DIMS, ...)
     table, rigs = _capacitances(study, film), {OWN_RIG: study.rig}
     rigs |= {name: study.rig.like(name) for name in PRESETS}
-    readings, length = _readings(study, film, rigs, slip, threads)
+    capacitance = table["capacitance"] + table["surrounding_capacitance"]
+    each = capacitance.transpose(*POINT_DIMS).values
+    readings, length = _readings(study, film, each, rigs, slip, threads)
     share = readings["true_contact_share"]
     if study.rig.has_surfaces:
         surfaces = _contact_of_surfaces(study, film, threads)
@@ -60,7 +63,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         share = contact["breakthrough_probability_mean"]
         table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
     table |= _closed_resistance(study, share, length)
-    capacitance = table["capacitance"] + table["surrounding_capacitance"]
     table["impedance_phase"] = _impedance_phases(
         rigs, share, table["closed_resistance"], capacitance
     )
@@ -122,8 +124,11 @@ def _gaps(study, film):
     return [(gap[0] * step, gap[1] * step) if gap else unknown for gap in gaps]
 
 
-def _readings(study, film, rigs, slip, threads):
-    """Contact shares by all rigs and readings, and the true ones; mean length of contact, m."""
+def _readings(study, film, capacitance, rigs, slip, threads):
+    """Contact shares by all rigs and readings, and the true ones; mean length of contact, m.
+
+    Each contact charges its whole capacitance, F.
+    """
     one_turn = study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})
     once = study.model_copy(update={"rig": one_turn})
     points = operating_points(film, slip)
@@ -137,8 +142,9 @@ def _readings(study, film, rigs, slip, threads):
         contact, at = revolution.contact, np.unravel_index(known[number], sizes)
         length[at] = contact.mean() * study.line_spec.spacing
         share[at] = np.count_nonzero(contact) / contact.size
+        revolution = replace(revolution, capacitance=capacitance[at])
         for row, rig in enumerate(rigs.values()):
-            shares = read_shares(revolution.voltage(rig), study.experiment, rig)
+            shares = mean_shares(revolution, study.experiment, rig)
             read[(row, ..., *at)], by_threshold[(row, ..., *at)] = shares
     found = {"true_contact_share": share, "read_contact_share": read}
     found["threshold_contact_share"] = by_threshold
@@ -165,8 +171,8 @@ def _discharges(study, film, rigs, threads, surfaces):
 
     gaps = [rig.bias_voltage / rig.dielectric_strength for rig in rigs.values()]
     found = {gap: touching(gap) for gap in {0.0, *gaps}}
-    # Few contacts more may come out as fewer, since both shares are estimates.
-    each = [np.maximum(found[gap] - found[0.0], 0.0) for gap in gaps]
+    # Few contacts more may come out as fewer, or as more than all, since both are estimates.
+    each = [np.maximum(np.minimum(found[gap], 1.0) - found[0.0], 0.0) for gap in gaps]
     sizes = [film.sizes[name] for name in POINT_DIMS]
     return ("rig", *POINT_DIMS), six_digits(np.reshape(each, (len(rigs), *sizes)))
 

@@ -10,6 +10,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field, StrictInt, WithJsonSchema, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
@@ -480,6 +481,21 @@ class Study(StrictModel):
             raise ValueError(
                 f"rig.amplifier_range: got {self.rig.amplifier_range:g} V, need more than the "
                 f"{voltage:.3g} V across {largest:g} ohm in this circuit"
+            )
+        if self.rig.leak_resistance <= largest:
+            raise ValueError(
+                f"rig.leak_resistance: got {self.rig.leak_resistance:g} ohm, need more than "
+                f"{largest:g} ohm, below which a record shows contact"
+            )
+        levels = divider_voltage(
+            np.array([0.0, self.experiment.threshold, self.rig.leak_resistance]), self.rig
+        )
+        most = np.diff(levels).min() / 3.0
+        if simulated and self.rig.noise > most:
+            raise ValueError(
+                f"rig.noise: got {self.rig.noise:.3g} V, need at most {most:.3g} V, a third of the "
+                f"voltage between {self.experiment.threshold:g} ohm and a contact that is closed "
+                "or open"
             )
         return self
 

@@ -7,8 +7,10 @@ from studies import CONFIG
 
 from lube.contact.window_films import window_films
 from lube.contact.windows import study_windows
-from lube.grid.operating_points import at_slip
+from lube.grid.levels import rolling
+from lube.grid.operating_points import at_slip, levels_at, operating_points
 from lube.physics.electrical import mean_inverse_gap
+from lube.rig.simulator import simulated_revolutions
 from lube.stages.electrical import make
 from lube.study.rig_settings import OWN_RIG
 from lube.study.study import load_study
@@ -36,6 +38,36 @@ def test_a_fast_rig_reads_the_share_that_is_true(found):
     read = found.read_contact_share.sel(rig="threshold-counter", reading="threshold")
     assert seen.any()
     np.testing.assert_allclose(read.where(seen), found.true_contact_share.where(seen), rtol=0.02)
+
+
+def test_a_slow_circuit_reads_longer_contact_the_more_capacitance_it_charges(found, study):
+    """After a contact 10 kohm charge the whole capacitance: contact seems longer by R C ln 2."""
+    read = found.read_contact_share.sel(rig="mtm-ecr-10-kohm", reading="adaptive threshold")
+    often = found.true_contact_share > 0.05
+    longer = (read - found.true_contact_share).where(often)
+    capacitance = found.capacitance + found.surrounding_capacitance
+    slip = rolling(study.slips)
+    film = at_slip(made(study, ("lubricant", "film"))["film"], slip).isel(film_formula=0)
+    points = operating_points(film, slip)
+    one = study.model_copy(update={"rig": study.rig.model_copy(update={"revolutions": 1})})
+    for _, number, turn in simulated_revolutions(one, points):
+        at = levels_at(points, number)
+        names = ("lubricant", "temperature", "speed", "force")
+        at = {name: at[name] for name in names}
+        if not often.sel(at):
+            continue
+        open_again = np.count_nonzero((turn.contact[:-1] > 0) & (turn.contact[1:] == 0))
+        delay = 1e4 * capacitance.sel(at).item() * np.log(2.0)
+        expected = open_again * delay / (turn.contact.size * turn.time_step)
+        # Some contacts follow before the capacitance is charged.
+        assert 0.3 * expected < longer.sel(at).item() < 1.3 * expected
+    assert often.any()
+
+
+def test_contact_and_discharges_together_take_no_more_than_all_the_time(found, files):
+    contact = files["contact"].geometric_contact_probability_mean.isel(film_formula=0)
+    contact = contact.sel(slide_to_roll_ratio=0.0).transpose(*found.film_thickness.dims)
+    assert (found.discharge_probability + contact < 1.02).all()
 
 
 def test_a_rough_contact_has_more_capacitance_than_plates_and_reads_a_thinner_film(found):
