@@ -171,7 +171,7 @@ class StudyFiles:
         dict of str to list of str
             From the step's name in the report to its files.
         """
-        steps = {stage: [stage] for stage in self.study.datasets}
+        steps = {stage: [stage] for stage in self.study.datasets_in(self.folder)}
         steps |= {"figures": list(figures), "explorer": ["explorer"]}
         if self.study.has("contact"):
             batches = [f"batch_{first}" for first in self.study.batches]

@@ -1,5 +1,7 @@
 """What to measure next, as tables for the laboratory."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray as xr
 
@@ -11,13 +13,16 @@ MOST = 5
 """Rows of each table."""
 
 
-def tables(found: xr.Dataset) -> str:
+def tables(found: xr.Dataset, doubts: Mapping[str, Mapping] | None = None) -> str:
     """Tabulate the best records of each quantity, durations, and other measurements.
 
     Parameters
     ----------
     found : xarray.Dataset
         A ``plan`` dataset.
+    doubts : dict, optional
+        From the name of a contact model to its `lube.grid.model_limits.doubts` of the first
+        lubricant, by temperature, speed and force in this order. The tables then name them.
 
     Returns
     -------
@@ -26,17 +31,23 @@ def tables(found: xr.Dataset) -> str:
     """
     points = found.isel(lubricant=0).stack(point=POINT_DIMS[1:])
     models = by_contact_model(points)
-    parts = [_part(models.sel(contact_model=model)) for model in models["contact_model"].values]
+    names = models["contact_model"].values
+    parts = [_part(models.sel(contact_model=name), (doubts or {}).get(name, {})) for name in names]
     others = _others(points) if "narrowing" in found else None
     return render("plan.md", parts=parts, others=others).strip()
 
 
-def _part(points):
+def _part(points, doubts):
     """Best records of each quantity and least intervals by duration, by one contact model."""
+    numbers, rows = range(points.sizes["point"]), doubts.items()
+    doubt = [", ".join(words for words, (_, where) in rows if where[one]) for one in numbers]
+    points = points.assign(doubt=("point", doubt))
     once = points.sel(turns=1.0, method="nearest")
     records = {name: _best(once.sel(quantity=name)) for name in once["quantity"].values}
     least = points["half_width"].min("point").transpose("quantity", "turns")
-    return {"points": points, "records": records, "least": least}
+    told = np.isfinite(once["half_width"]).any("quantity")
+    misread = points["reading_error"].where(told).median().item()
+    return {"points": points, "records": records, "least": least, "misread": misread}
 
 
 def _best(of_quantity):

@@ -212,3 +212,14 @@ def test_tables_are_made_for_either_model(found, both):
     assert line < text.index("**Film thickness**") < surface
     assert text.count("**Film thickness**") == 2
     assert "**By contact" not in tables(found)
+
+
+def test_doubtful_records_are_named_in_the_tables(found):
+    best = found["half_width"].sel(quantity="film thickness", turns=1.0).isel(lubricant=0)
+    points = best.stack(point=POINT_DIMS[1:])
+    first = {"asperities carry > 10 %": ("D", points == points.min())}
+    lines = tables(found, {"line": first}).splitlines()
+    width = f"± {100 * points.min().item():.3g} %"
+    assert any(width in line and line.endswith("| asperities carry > 10 % |") for line in lines)
+    assert any("±" in line and line.endswith("| – |") for line in lines)
+    assert "doubtful" not in tables(found)
