@@ -61,7 +61,9 @@ def fit_alpha(curves: RecordCurves, study: Study, comparison: Data) -> Data:
         is the coefficient of the study. Beyond `ALPHA_FACTORS` the factor is NaN, a limit 0 or
         infinity. For ``alpha_factor_coverage`` each realisation in turn is left out of the ensemble
         and taken as the records, or each drawn pair of surfaces; it is the fraction of these cases
-        whose interval contains 1, or NaN if none has contact.
+        whose interval contains 1, or NaN if none has contact. ``alpha_factor_explained`` is the
+        fraction of the records whose share lies in the 95 % prediction interval of one pair with
+        the factor, NaN without a factor: the best factor need not explain any.
     """
     logits = alpha_logits(curves, comparison)
     model = curves.contact_model
@@ -104,7 +106,7 @@ def fit_layer_strength(curves: RecordCurves, study: Study, comparison: Data) -> 
     xarray.Dataset
         ``fitted_layer_strength`` (Pa/m) with ``_lower`` and ``_upper`` over (fitted_lubricant,
         film_formula). Beyond the strengths of the curves it is NaN, a limit 0 or infinity.
-        ``fitted_layer_strength_coverage`` as in `fit_alpha`.
+        ``fitted_layer_strength_coverage`` and ``_explained`` as in `fit_alpha`.
     """
     strength, model = study.boundary_layer.strength, curves.contact_model
     tried, logits = strength_logits(curves, strength, comparison)
@@ -196,14 +198,18 @@ def _fits(name, tried, truth, logits, study, comparison, contact_model):
     """Fit a factor, with its limits and coverage, for every lubricant and film formula."""
     oils = np.array([record.name for record in study.lubricants])
     formulas = comparison["film_formula"].values
-    fits = np.full((len(LIMITS) + 1, oils.size, formulas.size), np.nan)
+    fits = np.full((len(LIMITS) + 2, oils.size, formulas.size), np.nan)
     for oil, number in np.ndindex(fits.shape[1:]):
         here = {"film_formula": number, "record": comparison["lubricant"].values == oils[oil]}
         model, records = logits.isel(here).values, comparison.isel(here)
-        fits[:-1, oil, number] = fit_records(np.log(tried), model, records, contact_model)
+        best = fit_records(np.log(tried), model, records, contact_model)
         coverage = _coverage if contact_model == "line" else _coverage_of_surfaces
-        fits[-1, oil, number] = coverage(np.log(tried), np.log(truth), model, records)
-    variables = values_with_limits(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
+        covers = coverage(np.log(tried), np.log(truth), model, records)
+        explained = _explained(np.log(tried), np.log(best[0]), model, records, contact_model)
+        fits[:, oil, number] = *best, covers, explained
+    *limits, coverages, explains = fits
+    variables = values_with_limits(name, limits)
+    variables |= {f"{name}_coverage": coverages, f"{name}_explained": explains}
     variables |= {"fitted_lubricant": oils, "film_formula": formulas}
     return xr.Dataset(with_dims("gauge", variables))
 
@@ -237,7 +243,14 @@ def fit_records(
 
 def _fit(log_factors, logits, comparison, contact_model):
     """Return the fit of a factor, as a function of the shares of the records."""
-    logits, covariance = logits + pooled_shift(comparison), _pair_scatter(comparison)
+    logits, noise = logits + pooled_shift(comparison), comparison["share_error"].values
+    scatter = _scatter(comparison, contact_model)
+    return lambda shares: fit_factor(log_factors, logits, shares, *scatter, noise)
+
+
+def _scatter(comparison, contact_model):
+    """Trials by which records weigh, covariance of their errors, and number of realisations."""
+    covariance = _pair_scatter(comparison)
     if contact_model == "surface":
         size, count = comparison["sample_size"].values, SURFACES
         covariance *= pair_correlation(comparison["simulated_probability"].values)
@@ -255,8 +268,21 @@ def _fit(log_factors, logits, comparison, contact_model):
         size = windows_at_records(comparison)
         scale = np.sqrt(size / trials)
         covariance *= scale[:, None] * scale
-    noise = comparison["share_error"].values
-    return lambda shares: fit_factor(log_factors, logits, shares, size, covariance, count, noise)
+    return size, covariance, count
+
+
+def _explained(log_factors, log_factor, logits, comparison, contact_model):
+    """Fraction of the records that the model explains with a factor, for one pair of rollers."""
+    logits, comparison = _usable(logits, comparison)
+    if np.isnan(log_factor):
+        return np.nan
+    curves = scipy.interpolate.make_interp_spline(log_factors, logits, k=1)
+    model = scipy.special.expit(curves(log_factor) + pooled_shift(comparison))
+    size, covariance, count = _scatter(comparison, contact_model)
+    variance = model * (1.0 - model) / size * np.diagonal(covariance)
+    error = np.sqrt(variance + comparison["share_error"].values ** 2)
+    off = np.abs(comparison["measured_share"].values - model)
+    return np.mean(off <= quantile(count) * error)
 
 
 def _usable(logits, comparison):

@@ -132,6 +132,7 @@ def _contact(contact):
         "unseen": upper.where(~seen).max().item(),
     }
     if found["touched"]:
+        found["alike"] = int((mean == mean.max()).sum())
         found["greatest"] = _values(contact.isel(mean.argmax(mean.dims)))
         found["least"] = _values(contact.isel(mean.where(seen).argmin(mean.dims)))
     return found
@@ -247,9 +248,12 @@ def _compared(comparison, gauge, first):
 
 
 def _gauged(gauge):
-    """How many records give both limits of their film, and how many only one."""
+    """How many records give both limits of their film or one; the coefficient that fits best."""
     lower, upper = (gauge[f"gauged_film_thickness_{end}"].values for end in ("lower", "upper"))
+    fitted = gauge.isel(fitted_lubricant=int(gauge["fitted_records"].argmax("fitted_lubricant")))
     return {
+        "factor": fitted["alpha_factor"].item(),
+        "explained": fitted["alpha_factor_explained"].item(),
         "records": upper.size,
         "closed": int((np.isfinite(upper) & (lower > 0.0)).sum()),
         "thicker": int(np.isposinf(upper).sum()),

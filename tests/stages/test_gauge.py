@@ -233,6 +233,17 @@ def test_a_changed_alpha_is_found(busy, at_grid):
         assert found["alpha_factor"].item() == pytest.approx(factor, rel=0.02)
 
 
+def test_the_right_factor_explains_as_many_records_as_pairs_scatter_and_a_wrong_model_few(
+    busy, at_grid, members, mean
+):
+    """Other pairs as records: 95 % lie in their prediction interval; shuffled shares do not."""
+    fits = [alpha_by_map(busy, at_grid(shares)).sel(FORMULA) for shares in members]
+    explained = [one["alpha_factor_explained"].item() for one in fits]
+    assert 0.85 < np.mean(explained) <= 1.0
+    wrong = alpha_by_map(busy, at_grid(np.sort(mean)[::-1].copy())).sel(FORMULA)
+    assert np.isfinite(wrong["alpha_factor"]) and wrong["alpha_factor_explained"] < 0.3
+
+
 def test_a_changed_layer_is_found(busy, at_grid):
     layer = busy.study.boundary_layer
     for factor in (0.3, 4.0):
@@ -282,6 +293,7 @@ def test_without_any_share_nothing_is_fitted(busy, at_grid):
     gauged = gauge_by_map(busy, at_grid(np.full(12, np.nan)))
     for name in ("alpha_factor", "fitted_layer_strength"):
         assert gauged[name].isnull().all() and gauged[f"{name}_coverage"].isnull().all()
+        assert gauged[f"{name}_explained"].isnull().all()
         assert (gauged[f"{name}_lower"] == 0.0).all()
         assert (gauged[f"{name}_upper"] == np.inf).all()
     assert gauged["fitted_records"].item() == 0
