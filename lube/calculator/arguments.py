@@ -140,6 +140,8 @@ def _numbers(value, units):
             return convert(_floats(numbers), given, units)
         case [str(), *_] as texts:
             return [parse_quantity(text, units) for text in texts]
+        case [first, *_] as quantities if hasattr(first, "magnitude"):
+            return [_numbers(one, units) for one in quantities]
         case _ if hasattr(value, "magnitude"):
             return convert(_floats(value.magnitude), f"{value.units}", units)
     return parse_quantity(value, units)
@@ -149,7 +151,9 @@ def _floats(numbers):
     try:
         return np.asarray(numbers, float)
     except (TypeError, ValueError):
-        raise LubeError(f"got {shown(numbers)}, need numbers and their unit") from None
+        commas = any("," in one for one in np.ravel(numbers).tolist() if isinstance(one, str))
+        points = ", with decimal points" if commas else ""
+        raise LubeError(f"got {shown(numbers)}, need numbers and their unit{points}") from None
 
 
 def bare_number(name: str, value: object, **limits: float) -> float:

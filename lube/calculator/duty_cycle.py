@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,8 @@ from lube.grid.gap import Gap
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits
 from lube.statistics.confidence import probability_interval
-from lube.study.small_csv import HEADER_CELL
+from lube.study.small_csv import HEADER_CELL, delimiter_of
+from lube.study.text_files import read_text
 
 _COLUMNS = {
     "force": "N",
@@ -72,7 +74,9 @@ def duty(
     Parameters
     ----------
     points : pandas.DataFrame, dict, list of dict or path of a CSV file
-        One row for each duty point; a dict of single values is one point. Columns of numbers carry
+        One row for each duty point; a dict of single values is one point. Columns of a file are
+        separated by commas, semicolons or tabs; with the last two, numbers may have decimal commas.
+        Columns of numbers carry
         their unit, as in ``force [N]``; in other columns each value does, as in ``"800 N"``. Needed
         are ``force``, ``temperature``,
         and one of ``speed`` (rotation of the first roller in pure rolling, such as rpm),
@@ -232,9 +236,8 @@ def _columns(points):
     try:
         if isinstance(points, Mapping) and not any(map(np.ndim, points.values())):
             points = [points]
-        is_file = isinstance(points, str | Path)
-        frame = pd.read_csv(points, skipinitialspace=True) if is_file else pd.DataFrame(points)
-    except (OSError, ValueError) as error:
+        frame = _read(points) if isinstance(points, str | Path) else pd.DataFrame(points)
+    except ValueError as error:
         raise DataError(f"points: got {shown(points)}, need a table: {error}") from None
     if frame.empty:
         raise DataError("points: got no rows, need one for each duty point")
@@ -245,10 +248,12 @@ def _columns(points):
             row = missing.tolist().index(True) + 1
             raise DataError(f"points: {header}: missing in row {row}, need it in every row")
         are_texts = all(isinstance(value, str) and not _NUMBER.match(value) for value in values)
-        if are_texts and header not in _COLUMNS:
+        cell = HEADER_CELL.fullmatch(header)
+        name, units = cell.groups() if cell else (header, None)
+        if are_texts and name not in _COLUMNS:
             labels[header] = "point", np.array(values, object)
             continue
-        name, numbers = _column(header, values)
+        numbers = _column(name, units, header, values)
         if name in columns:
             raise DataError(f"points: got the column {name!r} twice, need it once")
         columns[name] = numbers
@@ -262,10 +267,16 @@ def _columns(points):
     return columns, labels
 
 
-def _column(header, values):
-    """Name and values of a column, over ``point``."""
-    cell = HEADER_CELL.fullmatch(header)
-    name, units = cell.groups() if cell else (header, None)
+def _read(path):
+    """Table of a CSV file; with tabs or semicolons, numbers may have decimal commas."""
+    text = read_text(path, DataError)
+    delimiter = delimiter_of(text.partition("\n")[0])
+    decimal = "," if delimiter != "," and "," in text else "."
+    return pd.read_csv(StringIO(text), sep=delimiter, decimal=decimal, skipinitialspace=True)
+
+
+def _column(name, units, header, values):
+    """Values of a column, over ``point``."""
     if name not in _COLUMNS:
         raise DataError(f"points: unknown column {header!r}, {right_one(name, _COLUMNS)}")
     limits = {"temperature": {"above": -273.15}, "share": {"least": 0.0}}.get(name, {"above": 0.0})
@@ -274,4 +285,4 @@ def _column(header, values):
     given = values if units is None else (values, units)
     with located("points", DataError):
         numbers = amount(name, given, _COLUMNS[name], may_repeat=True, **limits)
-    return name, xr.DataArray(numbers.values, dims="point")
+    return xr.DataArray(numbers.values, dims="point")

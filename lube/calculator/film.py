@@ -213,7 +213,22 @@ def with_remarks(
             f"inlet_shear_heating: at {halved} operating points the film is less than half as "
             "thick, where no model of the heating is reliable"
         )
+    notes += _outside(table)
     return described(found.assign_attrs(remarks="\n".join(filter(None, notes))))
+
+
+def _outside(table):
+    """Remark on film formulas that are used outside their range of validity."""
+    invalid = ~table["in_validity_range"].astype(bool)
+    size = invalid.size // table["film_formula"].size
+    counts = invalid.sum(set(invalid.dims) - {"film_formula"})
+    for name, count in zip(*map(np.ravel, (table["film_formula"], counts)), strict=True):
+        if count:
+            other = "" if name == "computed" else "; `computed` solves Reynolds' equation instead"
+            yield (
+                f"film_formula: at {count} of {size} operating points `{name}` is outside its "
+                f"range of validity{other}"
+            )
 
 
 def conditions_of(table: xr.Dataset, choices: Choices) -> dict[str, xr.DataArray | float]:
