@@ -226,7 +226,7 @@ def _outside(table):
         if count:
             other = "" if name == "computed" else "; `computed` solves Reynolds' equation instead"
             yield (
-                f"film_formula: at {count} of {size} operating points `{name}` is outside its "
+                f"film_formula: at {int(count)} of {size} operating points `{name}` is outside its "
                 f"range of validity{other}"
             )
 

@@ -105,7 +105,8 @@ def required_film(
     film = film_in_si(rollers, Oil(_ANY_OIL), (force, "N"), "100 rpm", "60 degC", choices)
     factor = xr.DataArray(found["film_thickness"][0]) / film["film_thickness"]
     film = scaled_film(film, factor, has_shape=False).assign(
-        lambda_ratio=factor * film["lambda_ratio"]
+        lambda_ratio=factor * film["lambda_ratio"],
+        in_validity_range=xr.ones_like(film["in_validity_range"]),  # no formula is asked
     )
     if choices.has_surfaces:
         film["surface_load_share"] = surface_load_share(film, rollers.lines, has_shape=False)

@@ -207,6 +207,10 @@ def _properties(record, substance, temperature):
         came = f"the viscosity law gives {first:g} m2/s at {at:g} degC"
         raise RangeError(f"{came}, need a positive viscosity; narrow temperature_range")
     dynamic, stated = viscosity * density, substance.stated_coefficient(temperature)
+    if (thins := stated <= 0.0).any():  # cold water does
+        first, at = stated[thins][0] / PER_GPA, temperature[thins][0] - ZERO_CELSIUS
+        came = f"got a pressure-viscosity coefficient of {first:.3g} 1/GPa at {at:g} degC"
+        raise RangeError(f"{came}, need one above 0: a fluid that pressure thickens")
     return {
         "kinematic_viscosity": viscosity,
         "density": density,

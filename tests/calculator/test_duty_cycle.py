@@ -259,7 +259,7 @@ def test_a_mistake_is_one_line(rollers, oil, change, message):
 
 
 def test_a_file_that_is_not_there_is_one_line(rollers, oil):
-    with pytest.raises(LubeError, match=r"got 'nowhere\.csv', need a table"):
+    with pytest.raises(LubeError, match=r"nowhere\.csv: cannot be read: No such file"):
         lube.duty("nowhere.csv", rollers, oil)
 
 
@@ -363,3 +363,24 @@ def test_the_whole_is_unknown_where_the_film_is_at_any_point(rollers):
     known = found["breakthrough_probability_mean"].notnull().values
     assert known.tolist() == [False, True]
     assert np.isnan(found["whole_probability"]) and np.isnan(found["whole_tail_probability"])
+
+
+def test_files_with_semicolons_or_tabs_may_have_decimal_commas(rollers, oil, tmp_path):
+    rows = "force [N],speed [rpm],temperature [degC],radius [mm],gear", "400,100,60.5,12.5,2nd"
+    path = tmp_path / "duty.csv"
+    path.write_text("\n".join(rows))
+    expected = lube.duty(path, rollers, oil, **RUNS)
+    assert expected["gear"].item() == "2nd"
+    for delimiter, decimal in ((";", ","), ("\t", ","), (";", ".")):
+        written = [row.replace(",", delimiter).replace(".", decimal) for row in rows]
+        path.write_text("\n".join(written))
+        assert lube.duty(path, rollers, oil, **RUNS).identical(expected)
+
+
+def test_a_column_of_numbers_is_never_taken_for_labels(rollers, oil):
+    """With commas between columns, a quoted decimal comma is no number."""
+    for values, hint in ((["12,5"] * 3, ", with decimal points"), (["-"] * 3, "")):
+        with pytest.raises(LubeError) as caught:
+            lube.duty(POINTS | {"radius [mm]": values}, rollers, oil, **RUNS)
+        message = f"points: radius: got {values}, need numbers and their unit{hint}"
+        assert str(caught.value) == message

@@ -101,6 +101,17 @@ def test_what_is_unlikely_to_be_meant_is_remarked_as_by_lube_check(oil, changes,
     assert lube.film(odd, oil, **GRID, film_formula=["paper"]).attrs["remarks"]
 
 
+def test_each_formula_outside_its_range_is_remarked(rollers, oil):
+    """Rollers that hardly deform: M is below 1."""
+    light = POINT | {"force": ["2 N", "800 N"]}
+    found = lube.film(rollers, oil, **light, film_formula=["pan-hamrock", "computed"])
+    assert found.in_validity_range.values.tolist() == [[False, True], [True, True]]
+    assert found.attrs["remarks"].splitlines()[-1] == (
+        "film_formula: at 1 of 2 operating points `pan-hamrock` is outside its range of validity; "
+        "`computed` solves Reynolds' equation instead"
+    )
+
+
 def test_a_viscosity_in_a_wrong_unit_is_seen_from_the_film(rollers):
     thick = lube.Oil(viscosity={"40 degC": "68 m^2/s", "100 degC": "9 m^2/s"})
     assert "most are from 10 nm to 10 µm" in lube.film(rollers, thick, **POINT).attrs["remarks"]

@@ -450,6 +450,9 @@ def test_answers_have_the_remarks_of_the_probability_at_the_film_found(oil, mode
         height = f"{rougher['roughness_factor'].item()!r} um"
         of_height = remarks(Rollers("50 mm", height, **waves))
     assert f"the {model}" in expected and "asperities carry more than a tenth" in expected
-    for found in (film, speed, viscosity):
+    for found in (speed, viscosity):
         assert found.attrs["remarks"] == expected
+    *of_film, of_formula = expected.splitlines()
+    assert film.attrs["remarks"].splitlines() == of_film
+    assert of_formula.startswith("film_formula: at 1 of 1 operating points `pan-hamrock` is out")
     assert rougher.attrs["remarks"] == of_height

@@ -377,6 +377,13 @@ def test_impossible_answers_of_coolprop_are_refused(monkeypatch, answer):
         liquid_property("n-Dodecane", "viscosity", AT_40)
 
 
+def test_cold_water_which_pressure_thins_is_refused(fluid):
+    water = fluid("Water", "temperature_range: {source: x, lowest: 10 degC, highest: 60 degC}")
+    message = r"a-fluid: got a pressure-viscosity coefficient of -0\.3\d* 1/GPa at 20 degC"
+    with pytest.raises(RangeError, match=message):
+        lubricant_table([water], [50.0, 20.0])
+
+
 def test_fluids_that_coolprop_cannot_serve_are_refused(fluid):
     for name, message in [
         ("Unobtainium", "got 'Unobtainium', need a pure fluid by CoolProp's spelling"),

@@ -25,6 +25,8 @@ PURE_NUMBERS = [
     ("roughness.hurst_exponent", 0, "got 0, need a value above 0 and below 1"),
     ("rig.oil_permittivity", 0.5, "got 0.5, need a value at least 1"),
     ("rig.noise", "-1 uV", "got -1 uV, need a value at least 0 V"),
+    ("rig.leak_resistance", "90 ohm", "got 90 ohm, need more than 1000 ohm, below which"),
+    ("rig.noise", "30 mV", "got 30 mV, need at most 0.00831 V, a third of the voltage between"),
     ("rig.amplifier_range", "20 mV", "got 20 mV, need more than the 0.0455 V"),
     ("experiment.release_ratio", 0.9, "got 0.9, need a value at least 1"),
     ("experiment.debounce", "-1 s", "got -1 s, need a value at least 0 s"),
