@@ -133,7 +133,7 @@ class Oil:
         """
         degrees = amount("temperature", temperature, "degC")
         table = self.at(degrees)
-        names = [name for name, values in table.items() if values.dims == degrees.dims]
+        names = [name for name, values in table.items() if {*values.dims} <= {*degrees.dims}]
         return described(table[names])
 
     def at(self, temperature: xr.DataArray) -> xr.Dataset:
