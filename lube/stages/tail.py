@@ -15,7 +15,7 @@ from lube.grid.operating_points import over_contact_models, surface_speeds
 from lube.physics.excursions import crossing_rate
 from lube.physics.summits import sharp_summit_share
 from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
-from lube.statistics.confidence import breakthrough_limit, mean_interval
+from lube.statistics.confidence import breakthrough_limit, jackknife_interval, mean_interval
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.study import Study
@@ -165,9 +165,12 @@ def _by_groups(found, passages, revolution):
     sampled one by one, this gives 2 to 11 % too many of them where P is below 0.001; where it is
     greater, nearly all pairs have a breakthrough anyway.
     """
-    groups, never = _seen_groups(found, passages), 1.0 - found["breakthrough_probability"]
-    times = {"first_breakthrough_time": revolution * never * _wait(groups[""])}
-    return _pair_shares(groups) | times
+    groups = _seen_groups(found, passages)
+    # The more groups there are, the sooner comes the first.
+    ends = LIMITS[0], LIMITS[2], LIMITS[1]
+    never = (1.0 - found[f"breakthrough_probability{end}"] for end in ends)
+    times = [revolution * one * _wait(groups[end]) for one, end in zip(never, ends, strict=True)]
+    return _pair_shares(groups) | values_with_limits("first_breakthrough_time", times)
 
 
 def _seen_groups(found, windows):
@@ -344,9 +347,25 @@ def _in_a_revolution(spec, film, runs, of_pairs):
     # hardly any group ends, they are fewer than the independent windows with a breakthrough, which
     # are counted instead.
     groups = {end: np.maximum(found[f"groups{end}"], seen[end]) for end in LIMITS}
-    steps = _first_breakthrough(runs.mean("pair"), _window_points(spec, film), points)
-    time = spec.spacing / film["entrainment_speed"] * steps
-    return _pair_shares(groups) | {"first_breakthrough_time": time}
+    step = spec.spacing / film["entrainment_speed"]
+    times = [step * steps for steps in _first_steps(runs, _window_points(spec, film), points)]
+    return _pair_shares(groups) | values_with_limits("first_breakthrough_time", times)
+
+
+def _first_steps(runs, points, revolution):
+    """Steps of `_first_breakthrough`, with limits by the scatter between pairs if there are any."""
+    mean = runs.mean("pair").transpose("outcome", ...)
+    steps = _first_breakthrough(mean, points, revolution)
+    if runs.sizes["pair"] == 1:
+        return [steps, steps * np.nan, steps * np.nan]
+
+    def of_mean(values):
+        return _first_breakthrough(mean.copy(data=values), points, revolution).values
+
+    each = runs.transpose("pair", "outcome", ...).values
+    limits = jackknife_interval(each, of_mean)[1:]
+    # No pair waits longer than a revolution.
+    return [steps, *(steps.copy(data=np.minimum(limit, revolution)) for limit in limits)]
 
 
 def _window_points(spec, film):

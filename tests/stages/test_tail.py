@@ -377,6 +377,14 @@ def test_the_first_breakthrough_comes_when_counting_finds_it(
         counted.append(steps_to_the_next(first + second, film, window, factor))
     time = np.mean(counted) * spec.spacing / point["entrainment_speed"].item()
     assert found["first_breakthrough_time"] == pytest.approx(time, rel=0.15)
+    error = np.std(counted, ddof=1) / np.sqrt(30) * spec.spacing / point["entrainment_speed"].item()
+    lower, upper = (found[f"first_breakthrough_time_{end}"].item() for end in ("lower", "upper"))
+    assert lower - 2.0 * error < time < upper + 2.0 * error
+    # Other seeds scatter as much as the interval says.
+    seeds = (weak.model_copy(update={"seed": seed}) for seed in range(12))
+    others = [make(one, {"film": point}).squeeze() for one in seeds]
+    logs = np.log([one["first_breakthrough_time"].item() for one in others])
+    assert 0.4 < 3.92 * np.std(logs, ddof=1) / np.log(upper / lower) < 1.6
 
 
 @pytest.mark.parametrize("deformation", ["none", "computed"])
