@@ -353,7 +353,7 @@ def _in_a_revolution(spec, film, runs, of_pairs):
 
 
 def _first_steps(runs, points, revolution):
-    """Steps of `_first_breakthrough`, with limits by the scatter between pairs if there are any."""
+    """Find the steps of `_first_breakthrough`, with limits by the scatter between pairs."""
     mean = runs.mean("pair").transpose("outcome", ...)
     steps = _first_breakthrough(mean, points, revolution)
     if runs.sizes["pair"] == 1:
