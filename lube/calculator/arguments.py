@@ -141,7 +141,7 @@ def _numbers(value, units):
         case [str(), *_] as texts:
             return [parse_quantity(text, units) for text in texts]
         case [first, *_] as quantities if hasattr(first, "magnitude"):
-            return [_numbers(one, units) for one in quantities]
+            return _floats([_numbers(one, units) for one in quantities])
         case _ if hasattr(value, "magnitude"):
             return convert(_floats(value.magnitude), f"{value.units}", units)
     return parse_quantity(value, units)
@@ -151,7 +151,8 @@ def _floats(numbers):
     try:
         return np.asarray(numbers, float)
     except (TypeError, ValueError):
-        commas = any("," in one for one in np.ravel(numbers).tolist() if isinstance(one, str))
+        each = numbers if np.iterable(numbers) else [numbers]
+        commas = any("," in one for one in each if isinstance(one, str))
         points = ", with decimal points" if commas else ""
         raise LubeError(f"got {shown(numbers)}, need numbers and their unit{points}") from None
 

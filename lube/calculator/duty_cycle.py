@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +27,7 @@ from lube.grid.gap import Gap
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits
 from lube.statistics.confidence import probability_interval
-from lube.study.small_csv import HEADER_CELL, delimiter_of
-from lube.study.text_files import read_text
+from lube.study.small_csv import HEADER_CELL, read_cells, with_point
 
 _COLUMNS = {
     "force": "N",
@@ -75,7 +73,7 @@ def duty(
     ----------
     points : pandas.DataFrame, dict, list of dict or path of a CSV file
         One row for each duty point; a dict of single values is one point. Columns of a file are
-        separated by commas, semicolons or tabs; with the last two, numbers may have decimal commas.
+        separated by commas, semicolons or tabs, and its numbers may have decimal commas.
         Columns of numbers carry
         their unit, as in ``force [N]``; in other columns each value does, as in ``"800 N"``. Needed
         are ``force``, ``temperature``,
@@ -233,14 +231,7 @@ def _conditions(columns, rollers):
 
 def _columns(points):
     """Numbers of a table by column, over ``point`` in the units of `_COLUMNS`; then its labels."""
-    try:
-        if isinstance(points, Mapping) and not any(map(np.ndim, points.values())):
-            points = [points]
-        frame = _read(points) if isinstance(points, str | Path) else pd.DataFrame(points)
-    except ValueError as error:
-        raise DataError(f"points: got {shown(points)}, need a table: {error}") from None
-    if frame.empty:
-        raise DataError("points: got no rows, need one for each duty point")
+    frame = _frame(points)
     columns, labels = {}, {}
     for header, values in frame.items():
         header, missing, values = f"{header}".strip(), values.isna(), values.tolist()
@@ -267,12 +258,35 @@ def _columns(points):
     return columns, labels
 
 
+def _frame(points):
+    """Table of the points, with a row for each."""
+    try:
+        if isinstance(points, Mapping) and not any(map(np.ndim, points.values())):
+            points = [points]
+        frame = _read(points) if isinstance(points, str | Path) else pd.DataFrame(points)
+    except (TypeError, ValueError) as error:  # pint's errors are of the first kind
+        raise DataError(f"points: got {shown(points)}, need a table: {error}") from None
+    if frame.empty:
+        raise DataError("points: got no rows, need one for each duty point")
+    return frame
+
+
 def _read(path):
-    """Table of a CSV file; with tabs or semicolons, numbers may have decimal commas."""
-    text = read_text(path, DataError)
-    delimiter = delimiter_of(text.partition("\n")[0])
-    decimal = "," if delimiter != "," and "," in text else "."
-    return pd.read_csv(StringIO(text), sep=delimiter, decimal=decimal, skipinitialspace=True)
+    """Table of a CSV file, whose numbers may have decimal commas."""
+    (_, header), *rows = read_cells(path, DataError)
+    for line, cells in rows:
+        if len(cells) != len(header):
+            needed = f"need one for each of {len(header)} columns"
+            raise DataError(f"{path}: line {line}: got {len(cells)} values, {needed}")
+        with_points = [cell for cell in cells if "." in cell and _NUMBER.match(cell)]
+        if with_points and any(with_point(cell) != cell for cell in cells):
+            came = f"got {shown(with_points[0])} beside decimal commas"
+            raise DataError(f"{path}: line {line}: {came}, need no point")
+    cells = [[with_point(cell) or None for cell in cells] for _, cells in rows]
+    frame = pd.DataFrame(cells, columns=header)
+    numbers = frame.apply(pd.to_numeric, errors="coerce")
+    are_texts = np.broadcast_to(numbers.isna().any(), frame.shape)
+    return frame.where(are_texts, numbers.to_numpy())
 
 
 def _column(name, units, header, values):

@@ -219,7 +219,7 @@ def with_remarks(
 
 def _outside(table):
     """Remark on film formulas that are used outside their range of validity."""
-    invalid = ~table["in_validity_range"].astype(bool)
+    invalid = ~table["in_validity_range"].astype(bool) & table["film_thickness"].notnull()
     size = invalid.size // table["film_formula"].size
     counts = invalid.sum(set(invalid.dims) - {"film_formula"})
     for name, count in zip(*map(np.ravel, (table["film_formula"], counts)), strict=True):

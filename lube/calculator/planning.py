@@ -25,7 +25,11 @@ from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.grid.operating_points import surface_speeds
 from lube.inference import planning
-from lube.physics.electrical import film_capacitance, mean_inverse_gap, surrounding_capacitance
+from lube.physics.electrical import (
+    film_capacitance,
+    mean_inverse_open_gap,
+    surrounding_capacitance,
+)
 from lube.rig.readings import READINGS, mean_shares
 from lube.rig.simulator import Revolution
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
@@ -247,13 +251,13 @@ def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):
 
 
 def _capacitance(rollers, table, windows, oil):
-    """Capacitance of each rough contact and of the gap beside it, F; shape (points,)."""
+    """Capacitance of each contact where its gap is open, and beside it, F; shape (points,)."""
     names = "film_thickness", "contact_half_width", "reduced_radius"
     film, *dry = xr.broadcast(*(table[name] for name in names))
     film, half_width, radius = (each.transpose(*film.dims).values.ravel() for each in (film, *dry))
     spec, layer, length = rollers.lines, rollers.layer.critical_thickness, rollers.pair.length
     gaps = [gap or (np.nan, np.nan) for gap in windows.gaps(spec)]  # if the film is not known
     gaps = [np.multiply(gap, spec.height_step) for gap in gaps]
-    read = [1.0 / mean_inverse_gap(*gap, layer).mean() for gap in gaps]
+    read = [1.0 / mean_inverse_open_gap(*gap, layer).mean() for gap in gaps]
     plates = film_capacitance(np.array(read), half_width, length, oil)
     return plates + surrounding_capacitance(film, half_width, radius, length, oil)

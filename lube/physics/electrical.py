@@ -197,6 +197,35 @@ def mean_inverse_gap(film_thickness: Values, rms: Values, layer: float) -> Value
     return np.where(rms > 0.0, rough, smooth)[()]
 
 
+def mean_inverse_open_gap(film_thickness: Values, rms: Values, layer: float) -> Values:
+    r"""Mean of one over the gap where it is wider than the boundary layer.
+
+    A circuit charges this gap when a contact has ended. As `mean_inverse_gap`, without the part
+    :math:`\Phi(c - t)` of the gap that the layer alone fills.
+
+    Parameters
+    ----------
+    film_thickness, rms, layer
+        As for `mean_inverse_gap`.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        1/m.
+
+    Examples
+    --------
+    >>> f"{mean_inverse_open_gap(1e-6, 0.28e-6, 5e-9):.4g}"
+    '1.121e+06'
+    """
+    from scipy.special import ndtr  # slow to import
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        filled = ndtr((layer - np.asarray(film_thickness)) / rms)
+    inverse = mean_inverse_gap(film_thickness, rms, layer)
+    return np.where(np.asarray(rms) > 0.0, (inverse - filled / layer) / (1.0 - filled), inverse)[()]
+
+
 def surrounding_capacitance(
     film_thickness: Values, half_width: Values, reduced_radius: Values, length: float, oil: float
 ) -> Values:

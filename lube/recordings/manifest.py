@@ -6,7 +6,6 @@ refused in one line; the others are still read.
 """
 
 import os
-import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
@@ -16,7 +15,7 @@ from pydantic import NonNegativeInt, model_validator
 from lube.errors import DataError, located, right_one, shown
 from lube.recordings.signals import header_cell
 from lube.study.field_types import StrictModel, Text, checked_text, quantity, validate
-from lube.study.small_csv import read_cells
+from lube.study.small_csv import read_cells, with_point
 from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
@@ -232,7 +231,7 @@ def _entry(content, where, folder, earlier):
     if not isinstance(content, dict):
         raise DataError(f"{where}: got {type(content).__name__}, need a mapping of keys to values")
     content = {
-        key: value if key in _TEXTS else _with_point(value)
+        key: value if key in _TEXTS else with_point(value)
         for key, value in content.items()
         if value is not None
     }
@@ -248,8 +247,3 @@ def _entry(content, where, folder, earlier):
         if file is not None and dict(other) | {"where": where} == dict(entry):
             raise DataError(f"{where}: repeats {other.where}, need each record once")
     return entry
-
-
-def _with_point(value):
-    """Turn a decimal comma into a point."""
-    return re.sub(r"^(\s*[+-]?\d*),(?=\d)", r"\1.", value) if isinstance(value, str) else value

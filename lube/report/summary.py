@@ -248,12 +248,11 @@ def _compared(comparison, gauge, first):
 
 
 def _gauged(gauge):
-    """How many records give both limits of their film or one; the coefficient that fits best."""
+    """Count the records with both limits of their film, or one; and fits of the coefficient."""
     lower, upper = (gauge[f"gauged_film_thickness_{end}"].values for end in ("lower", "upper"))
-    fitted = gauge.isel(fitted_lubricant=int(gauge["fitted_records"].argmax("fitted_lubricant")))
+    fits = zip(*(gauge[f"alpha_factor{what}"].values for what in ("", "_explained")), strict=True)
     return {
-        "factor": fitted["alpha_factor"].item(),
-        "explained": fitted["alpha_factor_explained"].item(),
+        "fits": list(zip(gauge["fitted_lubricant"].values, fits, strict=True)),
         "records": upper.size,
         "closed": int((np.isfinite(upper) & (lower > 0.0)).sum()),
         "thicker": int(np.isposinf(upper).sum()),

@@ -48,9 +48,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = film.transpose(*POINT_DIMS, ...)
     table, rigs = _capacitances(study, film), {OWN_RIG: study.rig}
     rigs |= {name: study.rig.like(name) for name in PRESETS}
-    capacitance = table["capacitance"] + table["surrounding_capacitance"]
-    each = capacitance.transpose(*POINT_DIMS).values
-    readings, length = _readings(study, film, each, rigs, slip, threads)
+    around = table["surrounding_capacitance"]
+    charged = (_open_capacitance(study, film) + around).transpose(*POINT_DIMS).values
+    readings, length = _readings(study, film, charged, rigs, slip, threads)
     share = readings["true_contact_share"]
     if study.rig.has_surfaces:
         surfaces = _contact_of_surfaces(study, film, threads)
@@ -63,6 +63,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         share = contact["breakthrough_probability_mean"]
         table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
     table |= _closed_resistance(study, share, length)
+    capacitance = table["capacitance"] + around
     table["impedance_phase"] = _impedance_phases(
         rigs, share, table["closed_resistance"], capacitance
     )
@@ -113,6 +114,15 @@ def _capacitances(study, film):
     }
 
 
+def _open_capacitance(study, film):
+    """Capacitance of the contact where its gap is open, F."""
+    mean_gap, layer = film["film_thickness"], study.boundary_layer.critical_thickness
+    inverse = [electrical.mean_inverse_open_gap(*gap, layer).mean() for gap in _gaps(study, film)]
+    read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
+    length, oil = study.rollers.length, study.rig.oil_permittivity
+    return electrical.film_capacitance(read, film["contact_half_width"], length, oil)
+
+
 def _gaps(study, film):
     """Mean gap and rms height across each contact, m; NaN where the film is not known."""
     spec, unknown = study.line_spec, (np.nan, np.nan)
@@ -127,7 +137,7 @@ def _gaps(study, film):
 def _readings(study, film, capacitance, rigs, slip, threads):
     """Contact shares by all rigs and readings, and the true ones; mean length of contact, m.
 
-    Each contact charges its whole capacitance, F.
+    The circuit charges the capacitance of the open gap and its surroundings, F.
     """
     one_turn = study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})
     once = study.model_copy(update={"rig": one_turn})

@@ -170,6 +170,7 @@ def _by_groups(found, passages, revolution):
     ends = LIMITS[0], LIMITS[2], LIMITS[1]
     never = (1.0 - found[f"breakthrough_probability{end}"] for end in ends)
     times = [revolution * one * _wait(groups[end]) for one, end in zip(never, ends, strict=True)]
+    times = [each.where(found["breakthrough_probability"] > 0.0) for each in times]
     return _pair_shares(groups) | values_with_limits("first_breakthrough_time", times)
 
 

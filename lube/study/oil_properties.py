@@ -210,7 +210,7 @@ def _properties(record, substance, temperature):
     if (thins := stated <= 0.0).any():  # cold water does
         first, at = stated[thins][0] / PER_GPA, temperature[thins][0] - ZERO_CELSIUS
         came = f"got a pressure-viscosity coefficient of {first:.3g} 1/GPa at {at:g} degC"
-        raise RangeError(f"{came}, need one above 0: a fluid that pressure thickens")
+        raise RangeError(f"{came}, need one above 0; narrow temperature_range")
     return {
         "kinematic_viscosity": viscosity,
         "density": density,

@@ -86,3 +86,14 @@ def split_cells(line: str, delimiter: str) -> list[str]:
     # A carriage return inside a line would end it.
     cells = next(csv.reader([line.replace("\r", " ")], delimiter=delimiter, skipinitialspace=True))
     return [cell.strip() for cell in cells]
+
+
+def with_point(value: object) -> object:
+    """Turn the decimal comma of a text that begins with a number into a point.
+
+    Examples
+    --------
+    >>> with_point("12,5 mm"), with_point("boost, long"), with_point(3)
+    ('12.5 mm', 'boost, long', 3)
+    """
+    return re.sub(r"^(\s*[+-]?\d*),(?=\d)", r"\1.", value) if isinstance(value, str) else value

@@ -482,6 +482,8 @@ class Study(StrictModel):
                 f"rig.amplifier_range: got {self.rig.amplifier_range:g} V, need more than the "
                 f"{voltage:.3g} V across {largest:g} ohm in this circuit"
             )
+        if not (simulated and self.conducts):
+            return self
         if self.rig.leak_resistance <= largest:
             raise ValueError(
                 f"rig.leak_resistance: got {self.rig.leak_resistance:g} ohm, need more than "
@@ -490,8 +492,8 @@ class Study(StrictModel):
         levels = divider_voltage(
             np.array([0.0, self.experiment.threshold, self.rig.leak_resistance]), self.rig
         )
-        most = np.diff(levels).min() / 3.0
-        if simulated and self.rig.noise > most:
+        most = np.diff(np.minimum(levels, self.rig.amplifier_range)).min() / 3.0
+        if self.rig.noise > most:
             raise ValueError(
                 f"rig.noise: got {self.rig.noise:.3g} V, need at most {most:.3g} V, a third of the "
                 f"voltage between {self.experiment.threshold:g} ohm and a contact that is closed "

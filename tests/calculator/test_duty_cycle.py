@@ -365,8 +365,8 @@ def test_the_whole_is_unknown_where_the_film_is_at_any_point(rollers):
     assert np.isnan(found["whole_probability"]) and np.isnan(found["whole_tail_probability"])
 
 
-def test_files_with_semicolons_or_tabs_may_have_decimal_commas(rollers, oil, tmp_path):
-    rows = "force [N],speed [rpm],temperature [degC],radius [mm],gear", "400,100,60.5,12.5,2nd"
+def test_numbers_of_files_may_have_decimal_commas(rollers, oil, tmp_path):
+    rows = "force [N],speed [rpm],temperature,radius [mm],gear", "400,100,60.5 degC,12.5,2nd"
     path = tmp_path / "duty.csv"
     path.write_text("\n".join(rows))
     expected = lube.duty(path, rollers, oil, **RUNS)
@@ -375,10 +375,17 @@ def test_files_with_semicolons_or_tabs_may_have_decimal_commas(rollers, oil, tmp
         written = [row.replace(",", delimiter).replace(".", decimal) for row in rows]
         path.write_text("\n".join(written))
         assert lube.duty(path, rollers, oil, **RUNS).identical(expected)
+    path.write_text("# a comment\n\n" + "\n".join(rows).replace("60.5 degC", '"60,5 degC"'))
+    with pytest.raises(LubeError, match=r"line 4: got '12\.5' beside decimal commas, need no p"):
+        lube.duty(path, rollers, oil, **RUNS)
+    path.write_text(path.read_text().replace("12.5", '"12,5"'))
+    assert lube.duty(path, rollers, oil, **RUNS).identical(expected)
+    path.write_text("\n".join(rows).removesuffix(",2nd"))
+    with pytest.raises(LubeError, match=r"line 2: got 4 values, need one for each of 5 columns"):
+        lube.duty(path, rollers, oil, **RUNS)
 
 
 def test_a_column_of_numbers_is_never_taken_for_labels(rollers, oil):
-    """With commas between columns, a quoted decimal comma is no number."""
     for values, hint in ((["12,5"] * 3, ", with decimal points"), (["-"] * 3, "")):
         with pytest.raises(LubeError) as caught:
             lube.duty(POINTS | {"radius [mm]": values}, rollers, oil, **RUNS)
