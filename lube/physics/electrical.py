@@ -216,7 +216,7 @@ def mean_inverse_open_gap(film_thickness: Values, rms: Values, layer: float) -> 
     Examples
     --------
     >>> f"{mean_inverse_open_gap(1e-6, 0.28e-6, 5e-9):.4g}"
-    '1.121e+06'
+    '1.117e+06'
     """
     from scipy.special import ndtr  # slow to import
 
