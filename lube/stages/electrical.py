@@ -48,8 +48,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = film.transpose(*POINT_DIMS, ...)
     table, rigs = _capacitances(study, film), {OWN_RIG: study.rig}
     rigs |= {name: study.rig.like(name) for name in PRESETS}
-    around = table["surrounding_capacitance"]
-    charged = (_open_capacitance(study, film) + around).transpose(*POINT_DIMS).values
+    open_gap = _open_capacitance(study, film) + table["surrounding_capacitance"]
+    charged = open_gap.transpose(*POINT_DIMS).values
     readings, length = _readings(study, film, charged, rigs, slip, threads)
     share = readings["true_contact_share"]
     if study.rig.has_surfaces:
@@ -63,10 +63,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         share = contact["breakthrough_probability_mean"]
         table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
     table |= _closed_resistance(study, share, length)
-    capacitance = table["capacitance"] + around
-    table["impedance_phase"] = _impedance_phases(
-        rigs, share, table["closed_resistance"], capacitance
-    )
+    table["impedance_phase"] = _impedance_phases(rigs, share, table["closed_resistance"], open_gap)
     found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(six_digits)
     found = found.merge(readings, join="exact")
     found["discharge_probability"] = _discharges(study, film, rigs, threads, surfaces)
@@ -137,7 +134,7 @@ def _gaps(study, film):
 def _readings(study, film, capacitance, rigs, slip, threads):
     """Contact shares by all rigs and readings, and the true ones; mean length of contact, m.
 
-    The circuit charges the capacitance of the open gap and its surroundings, F.
+    The circuit charges the capacitance, F, of the open gap and its surroundings.
     """
     one_turn = study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})
     once = study.model_copy(update={"rig": one_turn})
