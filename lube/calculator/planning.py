@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from lube import types
 from lube.calculator.answers import Answer
@@ -25,12 +24,7 @@ from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.grid.operating_points import surface_speeds
 from lube.inference import planning
-from lube.physics.electrical import (
-    film_capacitance,
-    mean_inverse_open_gap,
-    surrounding_capacitance,
-)
-from lube.rig.readings import READINGS, mean_shares
+from lube.rig.readings import READINGS, charged_capacitance, mean_shares
 from lube.rig.simulator import Revolution
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, KnownRig, Rig
 from lube.study.uncertainty import CHOICES
@@ -233,7 +227,8 @@ def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):
         )
     windows = ContactWindows(spec, table, rollers.layer, gap)
     traces = windows.trace(draw_realisation(spec, seed, RIG_REALISATIONS), slip)
-    capacitance = _capacitance(rollers, table, windows, known.oil_permittivity)
+    settings = rollers.layer.critical_thickness, rollers.pair.length, known.oil_permittivity
+    capacitance = charged_capacitance(table, windows.gaps(spec), *settings).values.ravel()
     steps = spec.spacing / np.maximum(*surface_speeds(table["entrainment_speed"], slip))
     steps = steps.broadcast_like(film).transpose(*film.dims).values.ravel()
     resistance = rollers.resistivity / spec.spacing
@@ -248,16 +243,3 @@ def _reading_error(rollers, table, gap, slip, rig, thresholds, seed):
     seen = np.isfinite(errors)
     mean = errors.sum(axis=1, where=seen, keepdims=True) / np.maximum(seen.sum(axis=1)[:, None], 1)
     return np.where(seen, errors, mean)
-
-
-def _capacitance(rollers, table, windows, oil):
-    """Capacitance of each contact where its gap is open, and beside it, F; shape (points,)."""
-    names = "film_thickness", "contact_half_width", "reduced_radius"
-    film, *dry = xr.broadcast(*(table[name] for name in names))
-    film, half_width, radius = (each.transpose(*film.dims).values.ravel() for each in (film, *dry))
-    spec, layer, length = rollers.lines, rollers.layer.critical_thickness, rollers.pair.length
-    gaps = [gap or (np.nan, np.nan) for gap in windows.gaps(spec)]  # if the film is not known
-    gaps = [np.multiply(gap, spec.height_step) for gap in gaps]
-    read = [1.0 / mean_inverse_open_gap(*gap, layer).mean() for gap in gaps]
-    plates = film_capacitance(np.array(read), half_width, length, oil)
-    return plates + surrounding_capacitance(film, half_width, radius, length, oil)

@@ -106,7 +106,7 @@ def required_film(
     factor = xr.DataArray(found["film_thickness"][0]) / film["film_thickness"]
     film = scaled_film(film, factor, has_shape=False).assign(
         lambda_ratio=factor * film["lambda_ratio"],
-        in_validity_range=xr.ones_like(film["in_validity_range"]),  # no formula is asked
+        in_validity_range=xr.ones_like(film["in_validity_range"]),  # no formula is used
     )
     if choices.has_surfaces:
         film["surface_load_share"] = surface_load_share(film, rollers.lines, has_shape=False)

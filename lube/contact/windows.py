@@ -278,7 +278,7 @@ class ContactWindows:
         found = on_threads(lambda number: self.sample(spec, seed, number)[0], range(pairs), threads)
         return np.array(found)
 
-    def gaps(self, spec: LineSpecLike) -> list[Pair | None]:
+    def gaps(self, spec: LineSpecLike) -> list[Pair]:
         """Find the mean gap and the rms height of the roughness in it, across each contact.
 
         Parameters
@@ -289,15 +289,16 @@ class ContactWindows:
         Returns
         -------
         list of tuple of numpy.ndarray
-            Both at even positions from edge to edge of each contact, height steps, or one value for
-            all positions; None where the film is not known.
+            Both at even positions from edge to edge of each contact, m, or one value for all
+            positions; NaN where the film is not known.
         """
         rms, _ = sum_of_lines(spec, 1)
-        return [self._gap_at(point, spec, rms) for point in range(self.size)]
+        gaps = (self._gap_at(point, spec, rms) for point in range(self.size))
+        return [(film * spec.height_step, rough * spec.height_step) for film, rough in gaps]
 
     def _gap_at(self, point, spec, rms):
         if self.unknown[point]:
-            return None
+            return np.nan, np.nan
         if self._gap.is_plain:
             return self.thickness[point], np.asarray(rms)
         window, half_window = self._window([point]), self.half_windows[point]

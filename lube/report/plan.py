@@ -45,9 +45,9 @@ def _part(points, doubts):
     once = points.sel(turns=1.0, method="nearest")
     records = {name: _best(once.sel(quantity=name)) for name in once["quantity"].values}
     least = points["half_width"].min("point").transpose("quantity", "turns")
-    told = np.isfinite(once["half_width"]).any("quantity")
-    misread = points["reading_error"].where(told).median().item()
-    return {"points": points, "records": records, "least": least, "misread": misread}
+    is_useful = np.isfinite(once["half_width"]).any("quantity")
+    typical_error = points["reading_error"].where(is_useful).median().item()
+    return {"points": points, "records": records, "least": least, "typical_error": typical_error}
 
 
 def _best(of_quantity):

@@ -1,12 +1,16 @@
 """What meters read from the voltage of a record: shares of time, or its mean."""
 
-import numpy as np
+from collections.abc import Sequence
+from functools import partial
 
-from lube.physics.electrical import divider_voltage
+import numpy as np
+import xarray as xr
+
+from lube.physics import electrical
 from lube.rig.contact_share import record_counter
 from lube.rig.simulator import Revolution
 from lube.study.rig_settings import Experiment, Rig
-from lube.types import Array
+from lube.types import Array, Pair
 
 READINGS = "threshold", "adaptive threshold", "mean voltage"
 """Ways to read a contact share: the time below the study's threshold; the time below half of the
@@ -49,6 +53,35 @@ def mean_shares(
     return shares.tolist(), by_threshold
 
 
+def charged_capacitance(
+    film: xr.Dataset, gaps: Sequence[Pair], layer: float, length: float, oil: float
+) -> xr.DataArray:
+    """Capacitance that a circuit charges while the contact is open: of the gap, and beside it.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        Films and contacts at operating points.
+    gaps : sequence of tuple
+        Mean gap and rms height at each operating point, m, over positions across the contact.
+    layer, length, oil : float
+        As for `lube.physics.electrical.mean_inverse_open_gap` and `surrounding_capacitance`.
+
+    Returns
+    -------
+    xarray.DataArray
+        F, over the dimensions of the film thickness.
+    """
+    names = "film_thickness", "contact_half_width", "reduced_radius"
+    thickness, *dry = xr.broadcast(*(film[name] for name in names))
+    half_width, radius = (each.transpose(*thickness.dims) for each in dry)
+    inverse = [electrical.mean_inverse_open_gap(*gap, layer).mean() for gap in gaps]
+    plates = thickness.copy(data=1.0 / np.reshape(inverse, thickness.shape))
+    around = partial(electrical.surrounding_capacitance, length=length, oil=oil)
+    beside = xr.apply_ufunc(around, thickness, half_width, radius)
+    return electrical.film_capacitance(plates, half_width, length, oil) + beside
+
+
 def read_shares(voltage: Array, experiment: Experiment, rig: Rig) -> tuple[list[float], Array]:
     """Read contact shares from a record, in all ways.
 
@@ -71,7 +104,7 @@ def read_shares(voltage: Array, experiment: Experiment, rig: Rig) -> tuple[list[
     counter = record_counter(experiment, rig, "voltage", 1.0 / rig.sampling_rate)
     counter.add(voltage)
     by_threshold = counter.below.sum(axis=1) / voltage.size
-    whole = divider_voltage(rig.leak_resistance, rig).item()
+    whole = electrical.divider_voltage(rig.leak_resistance, rig).item()
     # From zero to twice the open circuit; noise beyond it is put at the ends.
     bins = np.clip(voltage * (0.5 * _BINS / whole), 0, _BINS - 1).astype(np.int64)
     below = np.cumsum(np.bincount(bins, minlength=_BINS))

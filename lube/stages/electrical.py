@@ -14,7 +14,7 @@ from lube.grid.film_responses import with_surface_responses
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip, known_films, operating_points
 from lube.physics import electrical
-from lube.rig.readings import READINGS, mean_shares
+from lube.rig.readings import READINGS, charged_capacitance, mean_shares
 from lube.rig.simulator import simulated_revolutions
 from lube.schema import POINT_DIMS, label, values_with_limits, with_dims
 from lube.study.rig_settings import OWN_RIG, PRESETS
@@ -46,11 +46,12 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     slip = rolling(study.slips)
     film = at_slip(with_surface_responses(inputs), slip).isel(film_formula=0, drop=True)
     film = film.transpose(*POINT_DIMS, ...)
-    table, rigs = _capacitances(study, film), {OWN_RIG: study.rig}
-    rigs |= {name: study.rig.like(name) for name in PRESETS}
-    open_gap = _open_capacitance(study, film) + table["surrounding_capacitance"]
-    charged = open_gap.transpose(*POINT_DIMS).values
-    readings, length = _readings(study, film, charged, rigs, slip, threads)
+    rigs = {OWN_RIG: study.rig} | {name: study.rig.like(name) for name in PRESETS}
+    gaps, layer = _gaps(study, film), study.boundary_layer.critical_thickness
+    table = _capacitances(study, film, gaps)
+    settings = layer, study.rollers.length, study.rig.oil_permittivity
+    charged = charged_capacitance(film, gaps, *settings)
+    readings, length = _readings(study, film, charged.values, rigs, slip, threads)
     share = readings["true_contact_share"]
     if study.rig.has_surfaces:
         surfaces = _contact_of_surfaces(study, film, threads)
@@ -63,7 +64,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         share = contact["breakthrough_probability_mean"]
         table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
     table |= _closed_resistance(study, share, length)
-    table["impedance_phase"] = _impedance_phases(rigs, share, table["closed_resistance"], open_gap)
+    table["impedance_phase"] = _impedance_phases(rigs, share, table["closed_resistance"], charged)
     found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(six_digits)
     found = found.merge(readings, join="exact")
     found["discharge_probability"] = _discharges(study, film, rigs, threads, surfaces)
@@ -94,10 +95,10 @@ def _impedance_phases(rigs, share, resistance, capacitance):
     return xr.concat(phases, "rig", coords="minimal", compat="override")
 
 
-def _capacitances(study, film):
+def _capacitances(study, film, gaps):
     """Capacitance of the rough contact and around it, and films by which meters explain it, m."""
     mean_gap, layer = film["film_thickness"], study.boundary_layer.critical_thickness
-    inverse = [electrical.mean_inverse_gap(*gap, layer).mean() for gap in _gaps(study, film)]
+    inverse = [electrical.mean_inverse_gap(*gap, layer).mean() for gap in gaps]
     read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
     half_width, radius = film["contact_half_width"], film["reduced_radius"]
     length, oil = study.rollers.length, study.rig.oil_permittivity
@@ -111,30 +112,20 @@ def _capacitances(study, film):
     }
 
 
-def _open_capacitance(study, film):
-    """Capacitance of the contact where its gap is open, F."""
-    mean_gap, layer = film["film_thickness"], study.boundary_layer.critical_thickness
-    inverse = [electrical.mean_inverse_open_gap(*gap, layer).mean() for gap in _gaps(study, film)]
-    read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
-    length, oil = study.rollers.length, study.rig.oil_permittivity
-    return electrical.film_capacitance(read, film["contact_half_width"], length, oil)
-
-
 def _gaps(study, film):
     """Mean gap and rms height across each contact, m; NaN where the film is not known."""
-    spec, unknown = study.line_spec, (np.nan, np.nan)
+    spec = study.line_spec
     if study.rig.has_surfaces:
         widths = xr.broadcast(film["film_thickness"], film["contact_half_width"])[1]
         strips = zip(strip_films(RoughPair.of(study), film), widths.values.ravel(), strict=True)
-        return [strip.gap(spec, width) if strip else unknown for strip, width in strips]
-    gaps, step = study_windows(study, film).gaps(spec), spec.height_step
-    return [(gap[0] * step, gap[1] * step) if gap else unknown for gap in gaps]
+        return [strip.gap(spec, width) if strip else (np.nan, np.nan) for strip, width in strips]
+    return study_windows(study, film).gaps(spec)
 
 
 def _readings(study, film, capacitance, rigs, slip, threads):
     """Contact shares by all rigs and readings, and the true ones; mean length of contact, m.
 
-    The circuit charges the capacitance, F, of the open gap and its surroundings.
+    The capacitance, F, is that which the circuit charges.
     """
     one_turn = study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})
     once = study.model_copy(update={"rig": one_turn})
