@@ -27,7 +27,7 @@ from lube.grid.gap import Gap
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits
 from lube.statistics.confidence import probability_interval
-from lube.study.small_csv import HEADER_CELL, read_cells, with_point
+from lube.study.small_csv import HEADER_CELL, read_cells, with_points
 
 _COLUMNS = {
     "force": "N",
@@ -274,16 +274,8 @@ def _frame(points):
 def _read(path):
     """Table of a CSV file, whose numbers may have decimal commas."""
     (_, header), *rows = read_cells(path, DataError)
-    for line, cells in rows:
-        if len(cells) != len(header):
-            needed = f"need one for each of {len(header)} columns"
-            raise DataError(f"{path}: line {line}: got {len(cells)} values, {needed}")
-        with_points = [cell for cell in cells if "." in cell and _NUMBER.match(cell)]
-        if with_points and any(with_point(cell) != cell for cell in cells):
-            came = f"got {shown(with_points[0])} beside decimal commas"
-            raise DataError(f"{path}: line {line}: {came}, need no point")
-    cells = [[with_point(cell) or None for cell in cells] for _, cells in rows]
-    frame = pd.DataFrame(cells, columns=header)
+    rows = with_points(path, rows, len(header), DataError)
+    frame = pd.DataFrame(rows, columns=header).replace("", None)
     numbers = frame.apply(pd.to_numeric, errors="coerce")
     are_texts = np.broadcast_to(numbers.isna().any(), frame.shape)
     return frame.where(are_texts, numbers.to_numpy())

@@ -6,11 +6,14 @@ Errors name the line in the file, which pandas does not report, so the lines are
 import csv
 import re
 
+from lube.errors import shown
 from lube.study.text_files import read_text
 from lube.types import File
 
 HEADER_CELL = re.compile(r"(\w+)\s*\[\s*([^\]\s](?:[^\]]*[^\]\s])?)\s*\]")
 """A column's name and unit: ``temperature [degC]``."""
+_POINTED = re.compile(r"\s*[-+]?\d*\.\d")
+"""Beginning of a number with a decimal point."""
 
 
 def read_cells(path: File, error_type: type) -> list[tuple[int, list[str]]]:
@@ -39,6 +42,47 @@ def read_cells(path: File, error_type: type) -> list[tuple[int, list[str]]]:
         raise error_type(f"{path}: empty, need a line of column names and rows of values")
     delimiter = delimiter_of(lines[0][1])
     return [(number, split_cells(line, delimiter)) for number, line in lines]
+
+
+def with_points(
+    path: File, rows: list[tuple[int, list[str]]], columns: int, error_type: type
+) -> list[list[str]]:
+    """Cells of a file's rows, with decimal commas turned into points.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, for error messages.
+    rows : list of tuple
+        From `read_cells`, without the line of the columns' names.
+    columns : int
+        Number of columns.
+    error_type : type
+        The subclass of LubeError to raise.
+
+    Returns
+    -------
+    list of list of str
+        The cells of each row.
+
+    Raises
+    ------
+    LubeError
+        Of `error_type`, if a row has more or fewer cells, or a number a point although others have
+        decimal commas.
+    """
+    cells = [[with_point(cell) for cell in row] for _, row in rows]
+    has_commas = cells != [row for _, row in rows]
+    for line, row in rows:
+        where = f"{path}: line {line}"
+        if len(row) != columns:
+            needed = f"need one for each of {columns} columns"
+            raise error_type(f"{where}: got {len(row)} values, {needed}")
+        pointed = list(filter(_POINTED.match, row))
+        if has_commas and pointed:  # thousands separators, or mistakes
+            came = f"got {shown(pointed[0])} in a file with decimal commas"
+            raise error_type(f"{where}: {came}, need no point")
+    return cells
 
 
 def units_of(header: list[str]) -> dict[str, str]:

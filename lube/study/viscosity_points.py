@@ -8,7 +8,7 @@ from lube.errors import RecordError, shown
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE
 from lube.study.field_types import StrictModel, quantity, validate
-from lube.study.small_csv import read_cells, units_of
+from lube.study.small_csv import read_cells, units_of, with_points
 from lube.types import File
 
 # Pressure up to which a viscosity counts as one at atmospheric pressure, Pa. It changes a
@@ -77,20 +77,11 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
     """
     (header_line, header), *rows = read_cells(path, RecordError)
     columns = _csv_columns(header, f"{path}: line {header_line}")
-    decimal_comma = any("," in cell for _, cells in rows for cell in cells)
-    points = []
-    for number, cells in rows:
-        where = f"{path}: line {number}"
-        if len(cells) != len(columns):
-            needed = f"need one for each of {len(columns)} columns"
-            raise RecordError(f"{where}: got {len(cells)} values, {needed}")
-        with_points = [cell for cell in cells if "." in cell]
-        if decimal_comma and with_points:  # thousands separators, or mistakes
-            came = f"got {shown(with_points[0])} in a file with decimal commas"
-            raise RecordError(f"{where}: {came}, need no point")
+    points, values = [], with_points(path, rows, len(columns), RecordError)
+    for (number, _), cells in zip(rows, values, strict=True):
         pairs = zip(columns.items(), cells, strict=True)
-        content = {name: f"{cell.replace(',', '.')} {units}" for (name, units), cell in pairs}
-        points.append(validate(ViscosityPoint, content, where, RecordError))
+        content = {name: f"{cell} {units}" for (name, units), cell in pairs}
+        points.append(validate(ViscosityPoint, content, f"{path}: line {number}", RecordError))
     return tuple(points)
 
 

@@ -376,7 +376,7 @@ def test_numbers_of_files_may_have_decimal_commas(rollers, oil, tmp_path):
         path.write_text("\n".join(written))
         assert lube.duty(path, rollers, oil, **RUNS).identical(expected)
     path.write_text("# a comment\n\n" + "\n".join(rows).replace("60.5 degC", '"60,5 degC"'))
-    with pytest.raises(LubeError, match=r"line 4: got '12\.5' beside decimal commas, need no p"):
+    with pytest.raises(LubeError, match=r"line 4: got '12\.5' in a file with decimal commas"):
         lube.duty(path, rollers, oil, **RUNS)
     path.write_text(path.read_text().replace("12.5", '"12,5"'))
     assert lube.duty(path, rollers, oil, **RUNS).identical(expected)
