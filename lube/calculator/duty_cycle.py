@@ -261,14 +261,21 @@ def _columns(points):
 def _frame(points):
     """Table of the points, with a row for each."""
     try:
-        if isinstance(points, Mapping) and not any(map(np.ndim, points.values())):
-            points = [points]
+        if isinstance(points, Mapping):
+            points = {name: _with_units(values) for name, values in points.items()}
+            points = points if any(map(np.ndim, points.values())) else [points]
         frame = _read(points) if isinstance(points, str | Path) else pd.DataFrame(points)
     except (TypeError, ValueError) as error:  # pint's errors are of the first kind
         raise DataError(f"points: got {shown(points)}, need a table: {error}") from None
     if frame.empty:
         raise DataError("points: got no rows, need one for each duty point")
     return frame
+
+
+def _with_units(values):
+    """Quantities of a list, or of an array with a unit, each with its unit, which pandas drops."""
+    is_list = isinstance(values, list | tuple) or np.ndim(getattr(values, "magnitude", None)) > 0
+    return np.fromiter(values, object, len(values)) if is_list else values
 
 
 def _read(path):

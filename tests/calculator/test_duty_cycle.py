@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+import pint
 import pytest
 
 import lube
@@ -61,6 +62,17 @@ def test_a_dict_of_single_values_is_one_point(rollers, oil):
     one = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
     found, same = (lube.duty(each, rollers, oil, **RUNS) for each in (one, [one]))
     assert found.identical(same)
+
+
+def test_lists_and_arrays_of_quantities_keep_their_units(rollers, oil):
+    of = pint.UnitRegistry().Quantity
+    levels = {"force": ([0.4, 1.6], "kN"), "temperature": ([60, 80], "degC")}
+    arrays = {name: of(*level) for name, level in levels.items()} | {"speed": of([100, 60], "rpm")}
+    lists = {name: list(array) for name, array in arrays.items()}
+    for points in (arrays, lists):
+        found = lube.duty(points, rollers, oil, **RUNS)
+        assert found["force"].values.tolist() == [400.0, 1600.0]
+        assert found["temperature"].values.tolist() == [60.0, 80.0]
 
 
 TAIL = [f"{name}{end}" for name in ("probability", "rate") for end in ("", "_lower", "_upper")]
