@@ -10,15 +10,13 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import Field, StrictInt, WithJsonSchema, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
 from lube import types
 from lube.errors import StudyError, located, shown
 from lube.grid.gap import Gap
-from lube.grid.levels import SAME, level_index, rolling
-from lube.physics.electrical import divider_voltage
+from lube.grid.levels import SAME, level_index
 from lube.schema.stages import ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
 from lube.study.line_spec import LineSpec
@@ -26,6 +24,7 @@ from lube.study.lubricant_record import LubricantRecord, load_record
 from lube.study.metadata import About
 from lube.study.operating_grid import OperatingGrid, TracePoint
 from lube.study.resolve import resolved_content, with_paths
+from lube.study.rig_checks import check_rig
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.roller_lines import band_in_words, line_spec
 from lube.study.roller_topography import RollerTopography
@@ -457,65 +456,9 @@ class Study(StrictModel):
 
     @model_validator(mode="after")
     def _check_rig(self):
-        if self.experiment.threshold not in self.experiment.thresholds:
-            raise ValueError(
-                f"experiment.threshold: got {self.experiment.threshold:g} ohm, need one of "
-                f"experiment.thresholds: {shown(self.experiment.thresholds)} ohm"
-            )
-        simulated = self.experiment.manifest is None
-        if self.rig.has_surfaces:
-            self._check_rig_surfaces()
-        if not (self.conducts or simulated):
-            raise ValueError(
-                f"resistivity: got {INSULATOR} together with experiment.manifest, need a "
-                "resistivity: records show contact by its resistance"
-            )
-        if simulated and self.rig.drift > 0.0 and not self.line_spec.is_gaussian:
-            raise ValueError(
-                f"rig.drift: got {self.rig.drift:g}, need 0 for a simulated rig with roughness "
-                "that is measured or not Gaussian: mixing lines changes the distribution of heights"
-            )
-        largest = max(self.experiment.thresholds) * self.experiment.release_ratio
-        voltage = divider_voltage(largest, self.rig)
-        if voltage >= self.rig.amplifier_range:
-            raise ValueError(
-                f"rig.amplifier_range: got {self.rig.amplifier_range:g} V, need more than the "
-                f"{voltage:.3g} V across {largest:g} ohm in this circuit"
-            )
-        if not (simulated and self.conducts):
-            return self
-        if self.rig.leak_resistance <= largest:
-            raise ValueError(
-                f"rig.leak_resistance: got {self.rig.leak_resistance:g} ohm, need more than "
-                f"{largest:g} ohm, below which a record shows contact"
-            )
-        levels = divider_voltage(
-            np.array([0.0, self.experiment.threshold, self.rig.leak_resistance]), self.rig
-        )
-        most = np.diff(np.minimum(levels, self.rig.amplifier_range)).min() / 3.0
-        if self.rig.noise > most:
-            raise ValueError(
-                f"rig.noise: got {self.rig.noise:.3g} V, need at most {most:.3g} V, a third of the "
-                f"voltage between {self.experiment.threshold:g} ohm and a contact that is closed "
-                "or open"
-            )
+        with located(kind=ValueError):
+            check_rig(self)
         return self
-
-    def _check_rig_surfaces(self):
-        slips = rolling(self.slips), self.trace_points[0]["slide_to_roll_ratio"]
-        needed = {
-            "contact_model: surface or [line, surface]": self.has_surfaces,
-            "rollers of one radius: else other points of the surfaces meet in every turn": (
-                self.line_spec.points[0] == self.line_spec.points[1]
-            ),
-            "a slide-to-roll ratio of 0 in operating_grid and traces: with slip other points of "
-            "the surfaces meet at every step": not any(slips),
-            "rig.drift: 0": self.rig.drift == 0.0,
-        }
-        for what, is_so in needed.items():
-            if not is_so:
-                line = "line" if self.line_spec.follows_rolling else "line, without records then"
-                raise ValueError(f"rig.contact_model: got surface, need {line}, or {what}")
 
     @property
     def trace_points(self) -> list[dict]:
