@@ -87,8 +87,9 @@ def sources(code: str, root: Path = ROOT) -> list[str]:
     Returns
     -------
     list of str
-        Paths relative to `root`, sorted: the modules, and the CSV tables and templates in their
-        folders, such as ``lube/schema/variables.csv``. Two modules are left out, with what only
+        Paths relative to `root`, sorted: the modules, a style of figures beside one of the same
+        name, and the CSV tables and templates in their folders, such as
+        ``lube/schema/variables.csv``. Two modules are left out, with what only
         they import: the study, whose values are parameters of the rules, and the package's
         ``__init__``, which computes nothing.
 
@@ -104,7 +105,12 @@ def sources(code: str, root: Path = ROOT) -> list[str]:
             found.add(file)
             waiting += _imports_of(file)
     data = ("*.csv", "templates/*")
-    found |= {path for file in found for pattern in data for path in file.parent.glob(pattern)}
+    found |= {
+        path
+        for file in found
+        for pattern in (*data, f"{file.stem}.mplstyle")
+        for path in file.parent.glob(pattern)
+    }
     return sorted(file.relative_to(root).as_posix() for file in found)
 
 

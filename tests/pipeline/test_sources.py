@@ -60,6 +60,9 @@ def test_a_module_is_a_source_of_the_scripts_and_stages_that_use_it():
 
     assert users("stages/trace") == {"trace"}
     assert users("plots") == {"explorer"}
+    of_figures = script_sources("figure", "from lube import plots")
+    assert {"lube/plots.py", "lube/plots.mplstyle"} <= set(of_figures)
+    assert not {"lube/plots.mplstyle"}.intersection(*map(stage_sources, MADE))
     assert {"batch", "trace", "rig", "experiment"} <= users("kernels/layer")
     assert "figure" in users("pipeline/notebooks")
     assert users("pipeline/jobs") == {*SCRIPTS, *MADE}

@@ -1,25 +1,31 @@
 # The figures of the study, read from their notebooks before any job.
 from lube.report.markdown import plain, to_html
-from lube.schema import SUMMARIES, TARGETS
+from lube.schema import STAGES, SUMMARIES, TARGETS
 from lube.study.metadata import PAPER as PAPER_TITLE
 from lube.pipeline.figure_list import chapters, made_by, made_on_request, study_figures
 
 with one_line_errors():
     FIGURES = study_figures(STUDY)
 
+# The words of the command. Of another workflow's command only rules of this one, by their names here.
+WORDS = sys.argv[1:]
+if IS_MODULE:
+    NAMES = [*TARGETS, *(stage.rule for stage in STAGES.values())]
+    NAMES = {workflow.modifier.modify_rulename(name): name for name in NAMES}
+    WORDS = [NAMES[word] for word in WORDS if word in NAMES]
+
 # Other figures are made on request only, for example by `snakemake computed`. Report and archive
 # have those that were made, and keep them up to date; bare `snakemake` leaves them alone.
 ALWAYS = made_by("all", FIGURES)
-EXTRA = made_on_request(FIGURES, RESULTS, sys.argv[1:])
+EXTRA = made_on_request(FIGURES, RESULTS, WORDS)
 KINDS = {kind for name in EXTRA for kind in FIGURES[name].datasets}
 KINDS = sorted(KINDS.union(STUDY.datasets_in(RESULTS)))
 CHAPTERS = chapters(FIGURES)
 
 products = FILES.products
 
-if not IS_MODULE:
-    # The targets are checked here because Snakemake reads them later.
-    FILES.check_targets(sys.argv[1:], FIGURES)
+# The targets are checked here because Snakemake reads them later.
+FILES.check_targets(WORDS, FIGURES)
 
 
 def in_report(path):
