@@ -124,10 +124,11 @@ def sampled_strips(
 
 def _with_limits(first, numbers, rows, widths, sampled):
     """Variables and their limits from all surfaces, for a strip of so many rows."""
-    results, groups = {}, partial(_up_to_certain, rows=rows)
+    results, groups = {}, partial(_groups, rows=rows)
+    both = np.concatenate([first, numbers[:, :, :2, None]], axis=-1)
     for which, (name, of_contacts) in enumerate(COUNTS.items()):
         # The limits are of the number of contacts: near 1 a probability scatters to one side.
-        limits = jackknife_interval(first[:, :, which], groups)
+        limits = jackknife_interval(both[:, :, which], groups)
         results |= values_with_limits(name, [-np.expm1(-each) for each in limits])
         results |= values_with_limits(of_contacts, mean_interval(rows * numbers[:, :, which]))
     in_contact, broken = (mean_interval(widths * numbers[:, :, which]) for which in (2, 3))
@@ -140,12 +141,22 @@ def _with_limits(first, numbers, rows, widths, sampled):
     for end in LIMITS:  # no layer breaks without contact, but both are known with an error
         most = results[f"{geometric}{end}"]
         results[f"{breakthrough}{end}"] = np.minimum(results[f"{breakthrough}{end}"], most)
-    return results | {WITHOUT: left_out(first[:, :, 1], groups)}
+    return results | {WITHOUT: left_out(both[:, :, 1], groups)}
 
 
-def _up_to_certain(first, rows):
-    """As `first_contacts`; greater numbers scatter far, and tell nothing more."""
-    return np.minimum(first_contacts(first, rows), _CERTAIN)
+def _groups(both, rows):
+    """Compute `first_contacts` from first rows and, as the last value, new contacts per row.
+
+    The probability is at most the number of contacts in the strip: those that begin in it, and the
+    one at its first row. Where few of many contacts count, the first rows alone scatter far beyond
+    that. Where none of those counted does, they are all that is known.
+    """
+    first, new = both[..., :-1], both[..., -1]
+    most = first[..., 0] + rows * new
+    is_limit = (new > 0.0) & (most < _ALL)
+    # Numbers beyond certainty scatter far, and tell nothing more.
+    most = np.where(is_limit, -np.log1p(-np.where(is_limit, most, 0.0)), _CERTAIN)
+    return np.minimum(first_contacts(first, rows), most)
 
 
 def _reach(spec, spacing):

@@ -15,6 +15,9 @@ from lube.kernels.shaped import Surface, answer_at
 from lube.kernels.tail import judged
 from lube.types import Array, Pair
 
+FEW = 3
+"""A run that is seen to break at no more moments than this is looked at in every time step."""
+
 
 class _Answered(NamedTuple):
     """Lines that the oil answers, around a known point in the window.
@@ -109,14 +112,16 @@ def touching_runs_under(
     speed_ratios: Array,
     strides: Array,
     factor: float,
+    most: int,
 ) -> Array:
     r"""Weigh runs of points in an uneven window, each found from one known point.
 
     A run may break and hold several times on its way through the window. A *breakthrough* is all of
     this together: the time steps at which the layer of a run breaks, as long as its points touch
-    without a pause. Each of these T time steps counts 1/T. Only each k-th step before and after
-    the present one is looked at, and where n steps are found, each counts 1/(k n). In expectation
-    this makes one for all T steps together, or T/k if T is below k.
+    without a pause. Each of these T time steps counts 1/T, so that they make one together. At first
+    only each k-th step before and after the present one is looked at. Where n steps break, with the
+    present one, and n is above `FEW`, this step counts 1/(k n), which makes one in expectation.
+    Else every step is looked at.
 
     Parameters
     ----------
@@ -137,6 +142,8 @@ def touching_runs_under(
         Shape (S, 2): surface speeds over that of the faster surface, at S slide-to-roll ratios.
     strides : numpy.ndarray
         Shape (S,), int64: number k of time steps from one look at a run to the next.
+    most : int
+        Most runs to follow. If the layer of more of them breaks, each j-th is followed.
 
     Returns
     -------
@@ -146,28 +153,52 @@ def touching_runs_under(
     """
     sums = np.zeros(1 + len(speed_ratios))
     answers = np.empty((2, 2, (film.size >> shift) + 2), np.float32)
-    with_known = np.empty(covariances.shape[:3])
+    answered = _Answered(
+        surfaces, covariances, np.empty(covariances.shape[:3]), 0, 0, answers, shift
+    )
+    broken = np.empty(places.size, np.int64)
+    count = 0
     for m in range(places.size):
-        known = touching[0][m]
-        answered = _Answered(
-            surfaces, covariances, with_known, places[m] - known, known, answers, shift
-        )
-        with_known[..., 0] = answers[0, 0] = np.nan
-        own = surfaces[0].line[places[m]] + surfaces[1].line[places[m]]
-        rise = touching[1][m] - (own + _answers_at(answered, 0, known, 0, 0))
-        rise /= np.float32(1.0) + _answers_at(answered, 1, known, 0, 0)
-        moved = _MovedLines(answered, correlations, rise, film)
-        start, stop, total = _run_under(moved, known, 0, 0)
+        moved = _through(answered, correlations, places[m], touching[0][m], touching[1][m], film)
+        start, stop, total = _run_under(moved, touching[0][m], 0, 0)
         points = max(stop - start, 1)  # rounding may put the known point just below the film
-        if not layer_breaks(points, total, factor):
-            continue
-        sums[0] += 1.0 / points
+        if layer_breaks(points, total, factor):
+            sums[0] += 1.0 / points
+            broken[count] = m
+            count += 1
+    each = max(-(-count // most), 1)
+    for m in broken[:count:each]:
+        moved = _through(answered, correlations, places[m], touching[0][m], touching[1][m], film)
+        start, stop, _ = _run_under(moved, touching[0][m], 0, 0)
         for s in range(len(speed_ratios)):
-            times = 1
-            for stride in (-strides[s], strides[s]):
-                times += _times_broken(moved, m, stride, speed_ratios[s], factor, start, stop)
-            sums[1 + s] += 1.0 / (points * strides[s] * times)
+            steps = _steps_broken(moved, m, strides[s], speed_ratios[s], factor, start, stop)
+            sums[1 + s] += 1.0 / (max(stop - start, 1) * steps)
+    sums[1:] *= count / max(-(-count // each), 1)
     return sums
+
+
+@kernel
+def _through(answered, correlations, place, known, height, film):
+    """Lines that are moved so that the gap at a known point of the window has some height."""
+    surfaces, covariances, with_known, _, _, answers, shift = answered
+    answered = _Answered(surfaces, covariances, with_known, place - known, known, answers, shift)
+    with_known[..., 0] = answers[0, 0] = np.nan
+    own = surfaces[0].line[place] + surfaces[1].line[place]
+    rise = height - (own + _answers_at(answered, 0, known, 0, 0))
+    rise /= np.float32(1.0) + _answers_at(answered, 1, known, 0, 0)
+    return _MovedLines(answered, correlations, rise, film)
+
+
+@kernel
+def _steps_broken(moved, now, stride, ratios, factor, start, stop):
+    """Estimate the time steps at which the layer of a run breaks on its way."""
+    for each in (stride, 1):
+        times = 1
+        for way in (-each, each):
+            times += _times_broken(moved, now, way, ratios, factor, start, stop)
+        if each == 1 or times > FEW:
+            return times * each
+    return times
 
 
 @kernel

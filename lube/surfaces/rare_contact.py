@@ -42,8 +42,8 @@ WINDOWS = 800
 """Windows along each pair of lines."""
 RUNS = 400
 """Runs along each pair of lines."""
-FOLLOWED = 100
-"""Number of these runs that are followed through an uneven window; it divides `RUNS`."""
+FOLLOWED = 60
+"""Most of these runs that are followed through an uneven window."""
 LOOKS = 64
 """Number of moments at which such a run is looked at, in pure rolling."""
 RUN_NUMBERS = 10
@@ -275,9 +275,9 @@ def rare_contact_under(
         film, answers = window.film[part].astype(np.float32), (window.at_once, window.shift)
         shares[:, i] = pair.windows(film, touching, own, answered, answers) * expected
         if levels:
-            above = part.start + known, touching[1]
+            above = part.start + known[:RUNS], touching[1][:RUNS]
             found = pair.runs_under(window, answered, above, speed_ratios[i], own)
-            runs[:, i] = found * (expected / FOLLOWED)
+            runs[:, i] = found * (expected / RUNS)
     return shares, runs
 
 
@@ -345,25 +345,23 @@ class RarePair:
         return np.array(touching_windows(self.line, starts, correlation, touching, film, factor))
 
     def runs_under(self, window, surfaces, touching, speed_ratios, factor):
-        """Sum the weights of `FOLLOWED` runs through an uneven window, each with a known point."""
-        # For another layout in memory Numba would compile the kernel once more.
-        some = slice(0, RUNS, RUNS // FOLLOWED)
-        places, *known = (np.ascontiguousarray(one[some]) for one in (self.places, *touching))
+        """Sum the weights of runs through an uneven window, each with a known point."""
         # From one look to the next the surfaces shift against each other by a point at most.
         shift = np.abs(np.diff(speed_ratios)[:, 0])
         most = window.film.size // LOOKS
         strides = np.maximum(most / np.maximum(most * shift, 1.0), 1.0).astype(np.int64)
         return touching_runs_under(
             surfaces,
-            places,
+            self.places,
             self.covariances,
-            tuple(known),
+            touching,
             window.film.astype(np.float32),
             window.covariances,
             window.shift,
             speed_ratios,
             strides,
             factor,
+            FOLLOWED,
         )
 
 

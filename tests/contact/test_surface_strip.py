@@ -83,11 +83,24 @@ def test_a_surface_that_tells_most_leaves_a_lower_limit():
 
 def test_numbers_beyond_certainty_do_not_scatter():
     """Without one of the surfaces every row seems to touch."""
-    first = np.zeros((24, 30))
-    first[1:, 0] = 1.0
-    function = partial(strip_sampling._up_to_certain, rows=1000)
-    _, lower, upper = -np.expm1(-np.array(jackknife_interval(first, function)))
+    both = np.zeros((24, 31))
+    both[1:, 0] = both[:, -1] = 1.0
+    function = partial(strip_sampling._groups, rows=1000)
+    _, lower, upper = -np.expm1(-np.array(jackknife_interval(both, function)))
     assert lower == upper == 1.0
+
+
+def test_a_strip_touches_no_more_often_than_contacts_lie_in_it():
+    """One surface shows contact in a hundred times as many first rows as the others."""
+    first = 2e-4 * (1.0 - 2e-4) ** np.arange(30)
+    of_surfaces = np.append(np.ones(23), 100.0)[:, None] * first
+    both = np.append(of_surfaces, np.full((24, 1), 2e-4), axis=1)
+    groups = partial(strip_sampling._groups, rows=1000)
+    probability, lower, upper = -np.expm1(-np.array(jackknife_interval(both, groups)))
+    assert probability < 1000 * 2e-4 + of_surfaces[:, 0].mean() + 1e-12
+    assert lower < 0.2 < upper < 0.3
+    both[:, -1] = 0.0  # none was counted
+    assert groups(both.mean(axis=0)) == first_contacts(of_surfaces.mean(axis=0), 1000)
 
 
 def test_a_formula_that_flattens_the_roughness_is_refused(spec, film, study):
