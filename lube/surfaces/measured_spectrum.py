@@ -29,13 +29,14 @@ waves it is made of, although interpolating the logarithm between scattered valu
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
 
 from lube.errors import DataError
 from lube.surfaces.abel import line_of_profile, monotone
-from lube.surfaces.lay import unstretched
+from lube.surfaces.lay import cosine_and_sine, unstretched
 from lube.surfaces.spectra import power_spectrum
 from lube.surfaces.spectrum_table import LineSpectrum, with_power
 from lube.surfaces.topography import Preparation, Topography, power_transfer, used_directions
@@ -47,6 +48,15 @@ adds a twelfth to the density here (H = 0.7), and doubles it at two points a wav
 
 LEAST_WAVES = 2
 """A wave that fits fewer times into the measured length is left out."""
+
+REPEATS = 4
+"""How often the fit of long ridges is repeated."""
+
+LONG_RIDGES = 0.04
+"""Ratio of long ridges, over the number of shortest waves that fit into the map."""
+
+LEAST_ROWS = 8
+"""Number of rows of waves along the ridges to which a lay is fitted at least."""
 
 BINS_PER_DECADE = 20
 """Densities are means over bins of this width, or of one wave where waves are fewer."""
@@ -271,6 +281,12 @@ def lay_of_map(
     over bins with n waves, and with the mean :math:`\bar P` of :math:`P e^{b q^2} / t`. Unless this
     gains more than `LEAST_GAIN`, b is 0.
 
+    Of ridges longer than the map, the window leaves some among the waves that fit into it. Where
+    the surface itself has no such waves, as q' lies beyond its band, the ratio found is far too
+    large. So a fit of long ridges is repeated, with those waves alone whose q' by the last fit is
+    not above `q_max`. These are fewer, and the first fit counts unless it is that much less likely
+    for them.
+
     Parameters
     ----------
     power, lengths, q_max
@@ -286,38 +302,95 @@ def lay_of_map(
         Angle between the ridges and the first axis, to a tenth of a degree.
     """
     _, direction = anisotropy(power, lengths, q_max)
-    along, across = np.broadcast_arrays(*_wave_vectors(power, lengths))
-    square = (along**2 + across**2) / q_max**2
-    transfer = power_transfer(q_max * np.sqrt(square), *cutoffs)
-    # The window blurs ridges longer than half of the map.
-    ridges = np.abs(across * math.cos(direction) - along * math.sin(direction))
-    used = ridges >= 2.0 * np.pi * LEAST_WAVES / min(lengths)
-    used &= (square <= 1.0) & (power > 0.0) & (transfer > LEAST_PART)
-    along, across, square = along[used], across[used], square[used]
-    powers = power[used] / transfer[used]
 
-    def misfit(lay, blur=0.0):
-        own, blur = unstretched(along, across, math.exp(abs(lay[0])), lay[1]), abs(blur)
+    def waves_inside(ratio, angle):
+        return _Waves.inside(power, lengths, q_max, cutoffs, (ratio, angle))
+
+    waves = waves_inside(1.0, math.degrees(direction) + 90.0)
+    lay, _ = waves.likeliest(math.degrees(direction) + 90.0)
+    shortest = _along_ridges(lengths, lay[1]) * q_max / (2.0 * np.pi)
+    if _ratio(lay) > LONG_RIDGES * shortest:
+        last = lay
+        for _ in range(REPEATS):
+            waves = waves_inside(min(_ratio(last), shortest / LEAST_ROWS), last[1])
+            last, misfit = waves.likeliest(last[1])
+        lay = last if waves.least_misfit(lay) > misfit + LEAST_GAIN else lay
+    angle = (lay[1] + 90.0) % 180.0 - 90.0  # ridges at 100 degrees are at -80
+    # A rounded angle just below 0 is no "-0" in messages.
+    return float(f"{_ratio(lay):.3g}"), round(float(angle), 1) + 0.0
+
+
+def _along_ridges(lengths, angle):
+    """Length of a map along ridges at an angle to its first axis."""
+    return math.hypot(*np.multiply(cosine_and_sine(angle), lengths))
+
+
+def _ratio(lay):
+    """Ratio of a lay, which is fitted as its logarithm and its angle."""
+    return math.exp(abs(lay[0]))
+
+
+@dataclass(frozen=True)
+class _Waves:
+    """Waves of a map to which a lay is fitted.
+
+    Attributes
+    ----------
+    along, across : numpy.ndarray
+        Wave vectors along both axes, rad/m.
+    square : numpy.ndarray
+        Square of the wavenumber over its largest.
+    powers : numpy.ndarray
+        Powers before the filters.
+    """
+
+    along: Array
+    across: Array
+    square: Array
+    powers: Array
+
+    @classmethod
+    def inside(cls, power, lengths, q_max, cutoffs, lay):
+        """Choose waves of which the isotropic surface's waves by some lay are not above `q_max`."""
+        along, across = np.broadcast_arrays(*_wave_vectors(power, lengths))
+        square = (along**2 + across**2) / q_max**2
+        transfer = power_transfer(q_max * np.sqrt(square), *cutoffs)
+        # The window blurs ridges longer than half of the map.
+        cosine, sine = cosine_and_sine(lay[1])
+        ridges = np.abs(along * cosine + across * sine)
+        used = ridges >= 2.0 * np.pi * LEAST_WAVES / _along_ridges(lengths, lay[1])
+        used &= (square <= 1.0) & (power > 0.0) & (transfer > LEAST_PART)
+        used &= unstretched(along, across, *lay) <= q_max
+        return cls(along[used], across[used], square[used], power[used] / transfer[used])
+
+    def misfit(self, lay, blur=0.0):
+        """Misfit of a lay, with the part b that a blur has, over the largest wavenumber squared."""
+        own, blur = unstretched(self.along, self.across, _ratio(lay), lay[1]), abs(blur)
         inside = (np.log10(own / own.min()) * BINS_PER_DECADE).astype(np.int64)
-        counts, total = np.bincount(inside), np.bincount(inside, powers * np.exp(blur * square))
+        total = np.bincount(inside, self.powers * np.exp(blur * self.square))
+        counts = np.bincount(inside)
         filled = counts > 0
         levels = np.sum(counts[filled] * np.log(total[filled] / counts[filled]))
-        return levels - blur * np.sum(square)
+        return levels - blur * np.sum(self.square)
 
-    def least(function, starts, steps):
+    def least_misfit(self, lay):
+        """Misfit of a lay with the likeliest blur."""
+        return self._least(lambda blur: self.misfit(lay, blur[0]), [(0.0,), (0.3,)], (0.5,)).fun
+
+    def likeliest(self, angle):
+        """Find the likeliest lay and its misfit, from an angle near it."""
+        starts = [(math.log(ratio), angle) for ratio in (1.2, 3.0, 8.0, 20.0)]
+        sharp = self._least(self.misfit, starts, (0.3, 5.0))
+        starts = [(*lay, blur) for lay in (*starts, sharp.x) for blur in (0.3, 3.0)]
+        blurred = self._least(lambda lay: self.misfit(lay[:2], lay[2]), starts, (0.3, 5.0, 0.5))
+        found = blurred if blurred.fun < sharp.fun - LEAST_GAIN else sharp
+        return found.x[:2], found.fun
+
+    def _least(self, function, starts, steps):
         begin = np.array(min(starts, key=function))
         simplex = begin + np.vstack([np.zeros(begin.size), np.diag(steps)])
-        options = {"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-9 * powers.size}
+        options = {"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-9 * self.powers.size}
         return scipy.optimize.minimize(function, begin, method="Nelder-Mead", options=options)
-
-    starts = [(math.log(ratio), math.degrees(direction) + 90.0) for ratio in (1.2, 3.0, 8.0, 20.0)]
-    sharp = least(misfit, starts, (0.3, 5.0))
-    starts = [(*lay, blur) for lay in (*starts, sharp.x) for blur in (0.3, 3.0)]
-    blurred = least(lambda lay: misfit(lay[:2], lay[2]), starts, (0.3, 5.0, 0.5))
-    found = blurred.x if blurred.fun < sharp.fun - LEAST_GAIN else sharp.x
-    angle = (found[1] + 90.0) % 180.0 - 90.0  # ridges at 100 degrees are at -80
-    # A rounded angle just below 0 is no "-0" in messages.
-    return float(f"{math.exp(abs(found[0])):.3g}"), round(float(angle), 1) + 0.0
 
 
 def _map_bins(surface, q_max, texture, cutoffs):

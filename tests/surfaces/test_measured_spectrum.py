@@ -265,6 +265,20 @@ def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
             assert abs((found.lay_angle - angle + 90.0) % 180.0 - 90.0) < 1.0
 
 
+@pytest.mark.parametrize(("ratio", "shortest"), [(20.0, 4), (20.0, 2), (10.0, 1)])
+def test_ridges_longer_than_the_map_are_not_found_too_long(ratio, shortest):
+    """The surface has no waves beyond some points across its ridges, as drawn ones have not."""
+    number = np.arange(2048)
+    along, across = (np.minimum(number, 2048 - number) / 2048.0)[:, None], number[:1025] / 2048.0
+    own = unstretched(along, across, ratio, 0.0)
+    band = (own >= 1.0 / 200.0) & (own <= 1.0 / shortest)
+    density = np.where(band, np.maximum(own, 1e-9) ** -3.4, 0.0)
+    noise = np.random.default_rng(8).normal(size=(2048, 2048))
+    heights = scipy.fft.irfft2(scipy.fft.rfft2(noise) * np.sqrt(density), noise.shape)
+    surface = Topography("ground.x3p", RMS * heights[:1024, :1024] / np.std(heights), (1e-6,) * 2)
+    assert spectrum_of(surface, LAY).lay_ratio == pytest.approx(ratio, rel=0.15)
+
+
 @pytest.mark.parametrize("ratio", [4.0, 8.0])
 def test_filters_and_blur_do_not_shorten_ridges(ratio):
     """They take most from the waves across ridges, which are the shortest."""
