@@ -535,8 +535,8 @@ def mark_outside(*panels: Axes) -> None:
             for marker, there in beyond.items():
                 if there.any():
                     at = x[there].clip(left, right), y[there].clip(low, high)
-                    face = line.get_markerfacecolor()
-                    panel.plot(*at, marker=marker, color=line.get_color(), mfc=face, **edge_mark)
+                    look = {"color": line.get_markeredgecolor(), "mfc": line.get_markerfacecolor()}
+                    panel.plot(*at, marker=marker, **look, **edge_mark)
 
 
 def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:

@@ -86,6 +86,9 @@ def test_points_outside_a_panel_are_marked_at_its_edge_in_their_colour():
         CARETLEFT: [[0.5, 0.5]],
     }
     assert {line.get_color() for line in marks.values()} == {"red"}
+    axes.plot([1], [9.0], **plots.around("o"))
+    plots.mark_outside(axes)
+    assert axes.lines[-1].get_color() == "black" and axes.lines[-1].get_mfc() == "none"
 
 
 def test_an_edge_cuts_no_marker_of_points_within_it():

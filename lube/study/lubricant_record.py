@@ -187,7 +187,7 @@ class LubricantRecord(StrictModel):
     name: Slug
     """label of the lubricant in all files"""
     title: Text
-    """name of the lubricant in figures"""
+    """full name of the lubricant, for the report; figures show its `name`"""
     viscosity: Viscosity
     viscosity_law: Literal[tuple(VISCOSITY_LAWS)] | None = None
     """law that gives the viscosity between the data; by default astm-d341"""

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import DataError, located, shown
-from lube.study.small_csv import read_cells, units_of
+from lube.study.small_csv import read_cells, units_of, with_points
 from lube.surfaces.topography import Topography
 from lube.types import File
 from lube.units import convert, parse_number
@@ -58,19 +58,16 @@ def _read_csv(path):
     if len(header) != 2 or list(units) != ["position", "height"]:
         needed = "need the columns `position [mm],height [um]` with units of length"
         raise DataError(f"{path}: line {number}: got {shown(','.join(header))}, {needed}")
-    values = np.array([_row(path, number, cells) for number, cells in rows]).reshape(-1, 2)
+    pointed = zip(rows, with_points(path, rows, 2, DataError), strict=True)
+    values = np.array([_row(f"{path}: line {number}", *cells) for (number, _), cells in pointed])
+    values = values.reshape(-1, 2)
     columns = zip(values.T, units.values(), strict=True)
     position, height = (_in_metres(path, *column) for column in columns)
     return Topography(str(path), height, (_even_spacing(path, position),))
 
 
-def _row(path, number, cells):
+def _row(where, position, height):
     """Position and height of a line; a missing height is NaN."""
-    where = f"{path}: line {number}"
-    if len(cells) != 2:
-        came = " | ".join(cells)
-        raise DataError(f"{where}: got {len(cells)} cells, {shown(came)}, need position and height")
-    position, height = cells
     with located(where, DataError):
         hole = height.lower() in ("", "nan")
         return parse_number(position), np.nan if hole else parse_number(height)
@@ -88,11 +85,8 @@ def _read_netcdf(path):
     height = dataset["height"].transpose("x", "y", ..., missing_dims="ignore")
     if height.ndim not in (1, 2) or not all(name in height.coords for name in height.dims):
         raise DataError(f"{path}: got height{height.dims}, need it over one or two coordinates")
-    spacing = tuple(
-        _even_spacing(path, _in_metres(path, height[name].values, height[name].attrs.get("units")))
-        for name in height.dims
-    )
-    heights = _in_metres(path, height.values.astype(float), height.attrs.get("units"))
+    spacing = tuple(_even_spacing(path, _labelled(path, height[name])) for name in height.dims)
+    heights = _labelled(path, height.astype(float))
     return Topography(str(path), heights, spacing)
 
 
@@ -109,7 +103,8 @@ def _read_instrument(path):
         if not channel.is_height_channel:
             raise DataError(f"{path}: got {channel.name} in its default channel, need heights")
         if channel.unit is None or channel.physical_sizes is None:
-            raise DataError(f"{path}: got a topography without unit or lengths, need both")
+            named = ", and the name `height` in NetCDF" if path.suffix.startswith(".nc") else ""
+            raise DataError(f"{path}: got a topography without unit or lengths, need both{named}")
         surface = channel.topography().to_unit("m")
         heights = np.ma.filled(np.ma.asarray(surface.heights(), dtype=float), np.nan)
         if not surface.is_uniform:
@@ -131,9 +126,14 @@ def _reason(error):
     return str(error).strip().partition("\n")[0] or type(error).__name__
 
 
+def _labelled(path, array):
+    """Values of a labelled array, m."""
+    if "units" not in array.attrs:
+        raise DataError(f"{path}: got no unit, need the attribute `units` of {array.name}")
+    return _in_metres(path, array.values, array.attrs["units"])
+
+
 def _in_metres(path, values, unit):
-    if unit is None:
-        raise DataError(f"{path}: got no unit, need `units` of the heights and of the positions")
     with located(f"{path}", DataError):
         return np.asarray(convert(values, unit, "m"))
 

@@ -117,6 +117,9 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
     shortest = max(finest, surface.resolution, settings.short_cutoff or 0.0)
     cutoffs = settings.long_cutoff, settings.short_cutoff
     of_surface, lay = settings.texture != "along rolling", (1.0, 90.0)
+    mean_square = np.mean(np.square(surface.heights))
+    if mean_square < LEAST_RMS_HEIGHT**2:
+        raise DataError(f"{surface.name}: got heights that are all alike, need rough ones")
     if surface.heights.ndim == 1:
         if settings.texture == "lay":
             raise DataError(f"{surface.name}: got a profile, need a map for the texture `lay`")
@@ -124,8 +127,7 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
     else:
         *bins, lay = _map_bins(surface, 2.0 * np.pi / shortest, settings.texture, cutoffs)
     wave_vector, density, estimates, inside, windowed = bins
-    mean_square = np.mean(np.square(surface.heights))
-    if wave_vector.size < 3 or mean_square < LEAST_RMS_HEIGHT**2 or not np.all(density > 0.0):
+    if wave_vector.size < 3 or not np.all(density > 0.0):
         raise DataError(f"{surface.name}: its spectrum is empty, need rough heights on more points")
     whole = windowed if settings.long_cutoff is None else mean_square
     density = with_power(wave_vector, density, estimates, whole - (windowed - inside))

@@ -158,7 +158,8 @@ def gaussian_power(power: Array, first_wave: int, points: int, curve: Array) -> 
         before, found = gaussian, found[first_wave : first_wave + power.size]
         gaussian = gaussian * prescribed / found
         gaussian = gaussian / gaussian.sum()
-        if np.max(np.abs(gaussian / before - 1.0)) < _CONVERGED:
+        seen = before > 0.0  # with a lay the shortest wave may be 0
+        if np.max(np.abs(gaussian[seen] / before[seen] - 1.0)) < _CONVERGED:
             break
     return gaussian
 

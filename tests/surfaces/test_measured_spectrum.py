@@ -325,10 +325,10 @@ def test_a_ground_surface_is_not_isotropic():
 
 
 def test_a_flat_surface_has_no_spectrum():
-    for shape, spacing in (((100, 100), (1e-6, 1e-6)), ((500,), (1e-6,))):
-        flat = Topography("flat.nc", np.full(shape, 1e-3), spacing)
-        with pytest.raises(DataError, match=r"flat.nc: its spectrum is empty"):
-            spectrum_of(flat, ALONG)
+    for texture, shape in ((ALONG, (500,)), (ALONG, (100, 100)), (LAY, (100, 100))):
+        flat = Topography("flat.nc", np.full(shape, 1e-3), (1e-6,) * len(shape))
+        with pytest.raises(DataError, match=r"flat.nc: got heights that are all alike"):
+            spectrum_of(flat, texture)
 
 
 def test_resolution_and_short_cutoff_end_the_spectrum():
