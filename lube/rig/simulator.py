@@ -38,6 +38,8 @@ from lube.types import Array, Pair, Ratios
 
 log = logging.getLogger(__name__)
 
+LONGEST_STEP = 0.25
+"""Longest time in which the circuit is taken to change little, over the filter's time constant."""
 TOGETHER = 16
 """Number of operating points whose contact of lines at all time steps is in memory at once."""
 _MOTION = "entrainment_speed", "slide_to_roll_ratio"
@@ -233,7 +235,8 @@ class Revolution:
         .. math:: u_\infty = \frac{U}{1 + R G}
 
         and in a time step the distance to this value decreases by the factor
-        :math:`\exp(-\Delta t (G + 1 / R) / C)`.
+        :math:`\exp(-\Delta t (G + 1 / R) / C)`. Long time steps are divided, so that the filter
+        follows what happens within them.
 
         Parameters
         ----------
@@ -245,18 +248,20 @@ class Revolution:
         numpy.ndarray
             Shape (samples,), float64, V, whole steps of the converter.
         """
-        contact, limit = self.contact, rig.amplifier_range
+        limit, rate = rig.amplifier_range, 2.0 * np.pi * rig.bandwidth
+        parts = max(math.ceil(self.time_step * rate / LONGEST_STEP), 1)
+        contact, time_step = np.repeat(self.contact, parts), self.time_step / parts
         points = np.arange(contact.max() + 1)
         feed = rig.series_resistance + rig.lead_resistance
         conductance = 1.0 / contact_resistance(points, self.spot_resistance)
         conductance += 1.0 / rig.leak_resistance
         targets = rig.bias_voltage / (1.0 + feed * conductance)
-        decays = np.exp(-self.time_step * (conductance + 1.0 / feed) / self.capacitance)
+        decays = np.exp(-time_step * (conductance + 1.0 / feed) / self.capacitance)
         gain = rig.series_resistance / feed
         offset = rig.bias_voltage * (1.0 - gain)
-        filter_decay = np.exp(-2.0 * np.pi * rig.bandwidth * self.time_step)
-        steps_per_sample = 1.0 / (rig.sampling_rate * self.time_step)
-        samples = int(contact.size * self.time_step * rig.sampling_rate) or 1
+        filter_decay = np.exp(-rate * time_step)
+        steps_per_sample = 1.0 / (rig.sampling_rate * time_step)
+        samples = int(self.contact.size * self.time_step * rig.sampling_rate) or 1
         voltage = sampled_voltage(
             contact, targets, decays, gain, offset, limit, filter_decay, steps_per_sample, samples
         )

@@ -48,6 +48,18 @@ def test_the_noise_has_its_rms_and_its_seed():
     assert abs(np.corrcoef(one, other)[0, 1]) < 0.03
 
 
+def test_the_filter_follows_what_happens_within_a_long_time_step():
+    """Behind 10 kohm the film charges slowly, so that the mean voltage depends on every closing."""
+    choosing, contact = np.random.default_rng(1), []
+    while len(contact) < 50_000:
+        contact += [0] * int(choosing.integers(20, 200)) + [40] * int(choosing.integers(1, 24))
+    rig = Rig(preset="mtm-ecr-10-kohm", **QUIET, sampling_rate="400 kHz")
+    coarse = Revolution(np.array(contact, np.int32), 2.5e-6, SPOT, 4e-10, (1,))
+    fine = replace(coarse, contact=np.repeat(coarse.contact, 40), time_step=2.5e-6 / 40)
+    reads = [1.0 - np.mean(one.voltage(rig)) / rig.bias_voltage for one in (coarse, fine)]
+    assert reads[0] == pytest.approx(reads[1], rel=0.006)
+
+
 def below(voltage, rig, threshold=100.0):
     return np.mean(voltage < divider_voltage(threshold, rig))
 
