@@ -103,9 +103,10 @@ def contact_probability(
         The variables of `film`; ``breakthrough_probability`` and
         ``geometric_contact_probability`` of each realisation, and ``_mean``, ``_lower`` and
         ``_upper`` of both; ``breakthrough_probability_pair_lower`` and ``_pair_upper``, between
-        which the share of one pair in a revolution lies in 95 % of cases. Results of importance
-        sampling are ``tail_breakthrough_probability``, ``tail_geometric_contact_probability`` and
-        ``tail_breakthrough_rate``, breakthroughs per hour, each with ``_lower`` and ``_upper``.
+        which the share of one pair in a revolution of the faster roller lies in 95 % of cases.
+        Results of importance sampling are ``tail_breakthrough_probability``,
+        ``tail_geometric_contact_probability`` and ``tail_breakthrough_rate``, breakthroughs per
+        hour, each with ``_lower`` and ``_upper``.
         Pieces of runs that the edges of the contact cut off add to the probability but not to the
         rate, which is NaN where nothing else was found to break. All are NaN where the heights are
         not Gaussian, or the formula flattens them; then the attribute ``remarks`` says so, before

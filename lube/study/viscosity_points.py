@@ -80,7 +80,7 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
     points, values = [], with_points(path, rows, len(columns), RecordError)
     for (number, _), cells in zip(rows, values, strict=True):
         pairs = zip(columns.items(), cells, strict=True)
-        content = {name: f"{cell} {units}" for (name, units), cell in pairs}
+        content = {name: f"{cell} {units}" for (name, units), cell in pairs if cell}
         points.append(validate(ViscosityPoint, content, f"{path}: line {number}", RecordError))
     return tuple(points)
 

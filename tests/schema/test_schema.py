@@ -99,6 +99,7 @@ def test_the_cell_methods_of_a_mean_name_what_it_is_over():
         ):
             continue  # expectations, not means
         if row.long_name.startswith(words) and "limit" not in row.long_name:
+            assert "cell_methods" in row.attributes, f"{kind}: {name} is a mean over what?"
             over, method = row.attributes["cell_methods"].split(": ", 1)
             assert over in (*row.dims, "revolutions", "duration")
             assert method.startswith(("mean", "root_mean_square"))

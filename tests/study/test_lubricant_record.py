@@ -274,6 +274,8 @@ def test_each_mistake_in_a_csv_file_is_refused_by_line_and_column(write):
         ("temperature [s],kinematic_viscosity [mm^2/s]\n40,100\n", "line 2: temperature: wrong"),
         (HEADER + "40,100\n# pause\n100,eleven\n", "line 4: kinematic_viscosity: got 'eleven mm"),
         (HEADER + "40,100\n100,0\n", "line 3: kinematic_viscosity: got 0 mm^2/s, need a"),
+        (HEADER + "40,\n100,10\n", "line 2: got no viscosity, need kinematic_viscosity or dynamic"),
+        (HEADER + ",30\n100,10\n", "line 2: temperature: missing, and it has no default"),
         (HEADER + "40,0,100,5\n", "line 2: got 4 values, need one for each of 2 columns"),
         (HEADER + "40,100\n", "data.csv: viscosity: got fewer than two temperatures"),
         (HEADER + "40,10\n100,100\n", "at 100 degC, need less than at 40 degC"),
@@ -288,6 +290,13 @@ def test_a_csv_file_must_exist_in_the_records_folder(write):
     for name in ("../data.csv", "/etc/passwd", "a/../../data.csv"):
         message = refusal(write(CSV_OIL.replace("data.csv", name)))
         assert f"viscosity.csv: got {name!r}, need a file in the record's folder" in message
+
+
+def test_a_csv_file_may_have_the_one_viscosity_in_some_rows_and_the_other_in_others(write):
+    text = HEADER.strip() + ",dynamic_viscosity [mPa*s]\n40,100,\n100,,9.1\n"
+    first, second = read_viscosity_csv(write(text, "data.csv"))
+    assert first.kinematic_viscosity == pytest.approx(1e-4) and first.dynamic_viscosity is None
+    assert second.dynamic_viscosity == pytest.approx(9.1e-3)
 
 
 def test_csv_may_contain_both_viscosities_if_they_agree(write):
