@@ -40,6 +40,8 @@ COLOURS = {
 }
 EDGE_MARK = "edge-mark"
 """Group identifier of the marks that `mark_outside` draws."""
+_AROUND = "around"
+"""Group identifier of the marks around points."""
 
 NOT_POINTS = ("None", "none", "", " ", "_", "|")
 """Markers that are not points: no marker, and the caps of bars."""
@@ -413,7 +415,7 @@ def around(marker: str) -> dict[str, Any]:
     """Style of a black mark around points, such as those of `lube.grid.model_limits.doubts`."""
     size = {"D": 6, "*": 9}.get(marker, 7)
     look = {"mfc": "none", "mec": "black", "mew": 0.7, "ms": size}
-    return {"linestyle": "none", "marker": marker} | look
+    return {"linestyle": "none", "marker": marker, "gid": _AROUND} | look
 
 
 def lone_points(y: np.ndarray) -> np.ndarray:
@@ -500,8 +502,8 @@ def mark_outside(*panels: Axes) -> None:
     """Mark at the panels' edges the points that lie beyond them.
 
     Each point gets a triangle of its colour, filled or hollow as its marker, at the nearest
-    position on the edge, directed at the point. The edge cuts no marker of a line whose points all
-    lie within.
+    position on the edge, directed at the point. Marks around points, as by `around`, move to the
+    edge with them. The edge cuts no marker of a line whose points all lie within.
 
     Parameters
     ----------
@@ -524,6 +526,9 @@ def mark_outside(*panels: Axes) -> None:
         (left, right), (low, high) = panel.get_xbound(), panel.get_ybound()
         for line in [line for line in panel.lines if line.get_marker() not in NOT_POINTS]:
             x, y = np.asarray(line.get_data(), float)
+            if line.get_gid() == _AROUND:
+                line.set(data=(x.clip(left, right), y.clip(low, high)), clip_on=False)
+                continue
             beyond = {
                 CARETUP: y > high,
                 CARETDOWN: y < low,
@@ -535,8 +540,8 @@ def mark_outside(*panels: Axes) -> None:
             for marker, there in beyond.items():
                 if there.any():
                     at = x[there].clip(left, right), y[there].clip(low, high)
-                    look = {"color": line.get_markeredgecolor(), "mfc": line.get_markerfacecolor()}
-                    panel.plot(*at, marker=marker, **look, **edge_mark)
+                    face = line.get_markerfacecolor()
+                    panel.plot(*at, marker=marker, color=line.get_color(), mfc=face, **edge_mark)
 
 
 def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:

@@ -86,9 +86,17 @@ def test_points_outside_a_panel_are_marked_at_its_edge_in_their_colour():
         CARETLEFT: [[0.5, 0.5]],
     }
     assert {line.get_color() for line in marks.values()} == {"red"}
-    axes.plot([1], [9.0], **plots.around("o"))
+
+
+def test_marks_around_points_outside_a_panel_move_to_its_edge_with_them():
+    _, axes = plt.subplots()
+    axes.plot([1, 2], [0.5, 9.0], "o", color="red")
+    axes.plot([1, 2], [0.5, 9.0], **plots.around("s"))
+    axes.set(xlim=(0.5, 2.5), ylim=(0, 1))
     plots.mark_outside(axes)
-    assert axes.lines[-1].get_color() == "black" and axes.lines[-1].get_mfc() == "none"
+    _, around, mark = axes.lines
+    assert around.get_xydata().tolist() == [[1.0, 0.5], [2.0, 1.0]] and not around.get_clip_on()
+    assert mark.get_xydata().tolist() == [[2.0, 1.0]]
 
 
 def test_an_edge_cuts_no_marker_of_points_within_it():
