@@ -273,7 +273,13 @@ def _frame(points):
 
 
 def _with_units(values):
-    """Quantities of a list, or of an array with a unit, each with its unit, which pandas drops."""
+    """Quantities of a list, a pair, or an array with a unit, each with its unit."""
+    if isinstance(values, tuple) and len(values) == 2 and isinstance(values[1], str):
+        numbers, units = values
+        if not isinstance(numbers, str):
+            texts = [f"{number!r} {units}" for number in np.ravel(numbers).tolist()]
+            return texts if np.ndim(numbers) else texts[0]
+    # Pandas would drop the units.
     is_list = isinstance(values, list | tuple) or np.ndim(getattr(values, "magnitude", None)) > 0
     return np.fromiter(values, object, len(values)) if is_list else values
 

@@ -191,24 +191,39 @@ def _through(answered, correlations, place, known, height, film):
 
 @kernel
 def _steps_broken(moved, now, stride, ratios, factor, start, stop):
-    """Estimate the time steps at which the layer of a run breaks on its way."""
-    for each in (stride, 1):
-        times = 1
-        for way in (-each, each):
-            times += _times_broken(moved, now, way, ratios, factor, start, stop)
-        if each == 1 or times > FEW:
-            return times * each
-    return times
+    """Estimate the time steps at which the layer of a run breaks on its way.
+
+    Where every step is looked at, those count as in `touching_runs_under` that a stride from any of
+    the steps would find: the phases of a stride in which more than `FEW` break count for their part
+    of the breakthrough, and the steps in all other phases share the rest.
+    """
+    found = _looks_broken(moved, now, stride, ratios, factor, start, stop, 1)[0]
+    if stride == 1 or found > FEW:
+        return float(stride * found)
+    counts = _looks_broken(moved, now, 1, ratios, factor, start, stop, stride)
+    are_few = counts <= FEW
+    are_few[0] = True
+    return np.sum(counts[are_few]) * stride / np.sum(are_few)
 
 
 @kernel
-def _times_broken(moved, now, stride, ratios, factor, start, stop):
-    """Count the looks, before or after the present time step, at which a run breaks.
+def _looks_broken(moved, now, stride, ratios, factor, start, stop, phases):
+    """Count the looks at which a run breaks, by the time step from the present one modulo `phases`.
 
     The run is followed as long as any of its points touches, as either surface carries them on.
     """
+    counts = np.zeros(phases, np.int64)
+    counts[0] = 1
+    for way in (-stride, stride):
+        _follow(moved, now, way, ratios, factor, start, stop, counts)
+    return counts
+
+
+@kernel
+def _follow(moved, now, stride, ratios, factor, start, stop, counts):
+    """Follow a run before or after the present time step, and add to the counts of its breaks."""
     film, answers = moved.film, moved.answered.answers
-    times = first = second = step = 0
+    first = second = step = 0
     while stop > start:
         step += stride
         moved_1 = surface_position(now, ratios[0]) - surface_position(now + step, ratios[0])
@@ -225,8 +240,7 @@ def _times_broken(moved, now, stride, ratios, factor, start, stop):
                 broke = broke or layer_breaks(after - begin, total, factor)
                 start, stop = min(start, begin), max(stop, after)
             point = max(after, point) + 1
-        times += broke
-    return times
+        counts[step % counts.size] += broke
 
 
 @kernel

@@ -40,6 +40,8 @@ log = logging.getLogger(__name__)
 
 LONGEST_STEP = 0.25
 """Longest time in which the circuit is taken to change little, over the filter's time constant."""
+MOST_PARTS = 32
+"""Most parts of a time step: with more, a filter that is much faster changes nothing."""
 TOGETHER = 16
 """Number of operating points whose contact of lines at all time steps is in memory at once."""
 _MOTION = "entrainment_speed", "slide_to_roll_ratio"
@@ -249,7 +251,7 @@ class Revolution:
             Shape (samples,), float64, V, whole steps of the converter.
         """
         limit, rate = rig.amplifier_range, 2.0 * np.pi * rig.bandwidth
-        parts = max(math.ceil(self.time_step * rate / LONGEST_STEP), 1)
+        parts = min(max(math.ceil(self.time_step * rate / LONGEST_STEP), 1), MOST_PARTS)
         contact, time_step = np.repeat(self.contact, parts), self.time_step / parts
         points = np.arange(contact.max() + 1)
         feed = rig.series_resistance + rig.lead_resistance

@@ -52,7 +52,7 @@ LEAST_WAVES = 2
 REPEATS = 4
 """How often the fit of long ridges is repeated."""
 
-LONG_RIDGES = 0.04
+LONG_RIDGES = 0.02
 """Ratio of long ridges, over the number of shortest waves that fit into the map."""
 
 LEAST_ROWS = 8

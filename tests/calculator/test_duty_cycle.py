@@ -69,7 +69,7 @@ def test_lists_and_arrays_of_quantities_keep_their_units(rollers, oil):
     levels = {"force": ([0.4, 1.6], "kN"), "temperature": ([60, 80], "degC")}
     arrays = {name: of(*level) for name, level in levels.items()} | {"speed": of([100, 60], "rpm")}
     lists = {name: list(array) for name, array in arrays.items()}
-    for points in (arrays, lists):
+    for points in (arrays, lists, levels | {"speed": (100, "rpm")}):
         found = lube.duty(points, rollers, oil, **RUNS)
         assert found["force"].values.tolist() == [400.0, 1600.0]
         assert found["temperature"].values.tolist() == [60.0, 80.0]

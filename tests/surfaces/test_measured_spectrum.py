@@ -265,7 +265,7 @@ def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
             assert abs((found.lay_angle - angle + 90.0) % 180.0 - 90.0) < 1.0
 
 
-@pytest.mark.parametrize(("ratio", "shortest"), [(20.0, 4), (20.0, 2), (10.0, 1)])
+@pytest.mark.parametrize(("ratio", "shortest"), [(20.0, 4), (20.0, 2), (10.0, 1), (5.0, 1)])
 def test_ridges_longer_than_the_map_are_not_found_too_long(ratio, shortest):
     """The surface has no waves beyond some points across its ridges, as drawn ones have not."""
     number = np.arange(2048)

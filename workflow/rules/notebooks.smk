@@ -7,12 +7,13 @@ from lube.pipeline.figure_list import chapters, made_by, made_on_request, study_
 with one_line_errors():
     FIGURES = study_figures(STUDY)
 
-# The words of the command. Of another workflow's command only rules of this one, by their names here.
+# The words of the command. Of another workflow's command only files, and this one's rules by their
+# names there.
 WORDS = sys.argv[1:]
 if IS_MODULE:
     NAMES = [*TARGETS, *(stage.rule for stage in STAGES.values())]
     NAMES = {workflow.modifier.modify_rulename(name): name for name in NAMES}
-    WORDS = [NAMES[word] for word in WORDS if word in NAMES]
+    WORDS = [NAMES.get(word, word) for word in WORDS if word in NAMES or os.sep in word]
 
 # Other figures are made on request only, for example by `snakemake computed`. Report and archive
 # have those that were made, and keep them up to date; bare `snakemake` leaves them alone.
