@@ -53,6 +53,19 @@ def test_all_results_are_planned_in_the_other_repository(other):
     assert all(name.startswith("results/mine/") for name in made - {"number.txt"})
 
 
+def test_targets_go_by_their_names_there(other):
+    shutil.copy2(ROOT / "notebooks/fig42_electrical.ipynb", other / "lube/notebooks")
+    planned = run(other, "--dry-run", "lube_electrical", "lube_archive")
+    (archive,) = re.findall(r"Job \d+: Archive.*\nReason: (.*)", planned)
+    assert "results/mine/figures/fig42_electrical.png" in archive
+    with open(other / "studies/mine.yaml", "a", encoding="utf-8") as study:
+        study.write("resistivity: insulator\n")
+    for target in ("lube_electrical", "results/mine/electrical.nc"):
+        finished = other.snakemake("--dry-run", target, study=None)
+        assert finished.returncode == 1
+        assert "The study cannot start. studies/mine.yaml: got the target" in finished.stdout
+
+
 @pytest.mark.slow
 def test_snakefile_and_configuration_of_the_catalogue_do_as_well(other):
     """As snakedeploy sets up a repository: with a copy of the folder `config`."""
