@@ -6,6 +6,7 @@ from logging import Logger
 import pandas as pd
 import xarray as xr
 
+from lube.errors import DataError
 from lube.schema import COORDINATES
 from lube.units import with_unit
 
@@ -27,7 +28,16 @@ def over_grid(dataset: xr.Dataset) -> xr.Dataset:
         Its variables over (slide_to_roll_ratio, lubricant, temperature, speed, force, repeat)
         instead of ``record``, NaN where there is no record; ``repeat`` numbers the records of one
         operating point. Records not at a level are left out.
+
+    Raises
+    ------
+    DataError
+        If the dataset has no records.
     """
+    if "temperature_level" not in dataset:
+        raise DataError(
+            "over_grid: got no records, need an experiment, comparison or gauge dataset"
+        )
     levels = {name: dataset[f"{name}_level"].values for name in ("temperature", "speed", "force")}
     names = {name: dataset[name].values for name in ("slide_to_roll_ratio", "lubricant")}
     table = pd.DataFrame(names | levels)

@@ -76,7 +76,11 @@ def surfaces_at_records(
     """
     experiment, first = inputs["experiment"], films.isel(film_formula=0)
     own, parts = _at_films(study, first, inputs, threads)
-    ratios, pair = _curve_ratios(study, first, parts), RoughPair.of(study)
+    own_ratios, rare = first["lambda_ratio"].values, (own[0] > 0.0) & (own[0] < ANCHORED)
+    thinnest, thickest = _curve_range(study, first, parts)
+    # Where most layers hold, they may break rarely under films that many contacts bridge.
+    thinnest = np.min(own_ratios[rare], initial=thinnest)
+    ratios, pair = np.geomspace(thinnest, thickest, CURVE_FILMS), RoughPair.of(study)
     thickness = xr.DataArray(ratios, dims="curve_film") * first["composite_rms_roughness"].item()
     strengths = _layer_strengths(pair, first, thickness.median())
     scatter, curves = np.empty(own.shape[1]), np.empty((4, ratios.size, own.shape[1]))
@@ -89,7 +93,7 @@ def surfaces_at_records(
         some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
         found = _curves(study, some, pair.layer.strength / strengths, threads)
         curves[..., records], of_layers[..., records] = found
-    anchored = _anchored(curves, own[0], np.log(ratios), np.log(first["lambda_ratio"].values))
+    anchored = _anchored(curves, own, np.log(ratios), np.log(own_ratios))
     few = of_layers[strengths == pair.layer.strength]
     of_layers = _with_groups(of_layers, _groups(anchored[0, LAYER_FILMS]) / _groups(few))
     curves[:3] = anchored
@@ -136,10 +140,14 @@ def _anchored(curves, own, log_ratios, log_own):
     """Curves with as many groups of contacts at the film of each record as were sampled there.
 
     A curve is sampled on the first of the same surfaces, so what it shows too much or too little
-    there it shows at other films, too. This corrects the error of interpolation as well.
+    there it shows at other films, too. This corrects the error of interpolation as well. Numbers of
+    groups that are not known within a factor of two, as where contact is nearly certain, correct
+    nothing.
     """
+    own, lower, upper = own[:3]
     factors = np.ones(own.size)
-    for record in np.flatnonzero((own > 0.0) & (own < ANCHORED)):
+    known = (own > 0.0) & (own < ANCHORED) & (_groups(upper) < 2.0 * _groups(lower))
+    for record in np.flatnonzero(known):
         curve = contact_curve(log_ratios, curves[0, :, record], curves[3, :, record])
         read = scipy.special.expit(curve.logit_at(log_own[record]))
         factors[record] = _groups(own[record]) / _groups(read)
@@ -216,8 +224,8 @@ def _numbers(study, contact):
     return np.stack([*limits, revolution_size(study.line_spec, contact)])
 
 
-def _curve_ratios(study, first, parts):
-    """Lambda ratios of the curves, from theory; the ends are those of the records furthest apart.
+def _curve_range(study, first, parts):
+    """Least and largest lambda ratio of the curves, those of the records furthest apart.
 
     Under uneven films, and where the oil answers the surfaces, each record has its own contacts.
     """
@@ -226,10 +234,9 @@ def _curve_ratios(study, first, parts):
         films = ratios * first["composite_rms_roughness"].item()
         width = 2.0 * first["contact_half_width"].mean().item()
         contacts = expected_contacts(films, moments, study.rollers.length, width)
-        ends = np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
-        return np.geomspace(*ends, CURVE_FILMS)
+        return np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
     ends = np.concatenate([_curve_ends(study, films) for _, films in parts])
-    return np.geomspace(ends[:, 0].min(), ends[:, 1].max(), CURVE_FILMS)
+    return ends[:, 0].min(), ends[:, 1].max()
 
 
 def _curve_ends(study, films):

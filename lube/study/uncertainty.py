@@ -90,7 +90,7 @@ class _Uncertain(StrictModel):
         """Half of the range, reduced to a part of it, in words, such as ``+- 1 %``."""
         lower, upper = self.range
         half = 0.5 * part * (upper - lower) * self._SCALE
-        return f"+- {float(f'{half:.1g}'):g}{self._UNITS}"
+        return f"+- {float(f'{half:.2g}'):g}{self._UNITS}"
 
 
 class Relative(_Uncertain):

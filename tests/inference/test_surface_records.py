@@ -16,6 +16,7 @@ from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_records import (
     CURVE_CONTACTS,
     LAYER_FILMS,
+    _anchored,
     _by_formula,
     reading_errors,
     surface_curves,
@@ -44,6 +45,17 @@ def at_records(study, inputs, force, temperature=40.0):
     films = study_films_at_records(study, experiment)
     found = surfaces_at_records(study, films, inputs | {"experiment": experiment}, 2)
     return films.isel(film_formula=0), found.isel(film_formula=0)
+
+
+def test_a_curve_is_corrected_by_numbers_that_are_known_within_a_factor_of_two():
+    ratios = np.geomspace(1.5, 6.0, 8)
+    curve = -np.expm1(-5.0 * np.exp(-0.5 * (ratios**2 - ratios[0] ** 2)))
+    curves = np.stack([curve, curve, curve, np.full(8, 100.0)])[..., None].repeat(2, axis=2)
+    # At the thinnest film half as many groups as by the curve: in one case known, in one not.
+    own = -np.expm1(-np.array([[2.5, 2.5], [2.1, 1.0], [3.0, 6.0]]))
+    known, unknown = _anchored(curves, own, np.log(ratios), np.log(ratios[[0, 0]]))[0].T
+    np.testing.assert_allclose(np.log1p(-known), 0.5 * np.log1p(-curve), rtol=0.02)
+    np.testing.assert_array_equal(unknown, curve)
 
 
 @pytest.fixture(scope="module")

@@ -95,7 +95,7 @@ def test_the_quantity_with_the_largest_part_is_to_be_measured_first(found):
     assert narrowing["factor"].values.tolist() == ["viscosity", "first_rms_roughness"]
     # Half of the variance, of which a tenth is left.
     assert narrowing[1] == pytest.approx(1.0 - np.sqrt(0.55), rel=1e-4)
-    assert found["accuracy_of_factor"].values.tolist() == ["+- 3 %", "+- 9 %"]
+    assert found["accuracy_of_factor"].values.tolist() == ["+- 3.2 %", "+- 8.5 %"]
 
 
 def test_tables_have_the_best_records_first(found):
@@ -105,7 +105,7 @@ def test_tables_have_the_best_records_first(found):
     first = next(line for line in rows if "±" in line)
     best = found["half_width"].sel(quantity="film thickness", turns=1.0).min().item()
     assert f"± {100 * best:.3g} %" in first
-    assert "| first rms roughness | -29 % to 25 % | +- 9 % |" in text
+    assert "| first rms roughness | -29 % to 25 % | +- 8.5 % |" in text
 
 
 def test_what_is_not_above_the_noise_is_not_to_be_measured(found, sensitivity, study, files):
