@@ -225,7 +225,7 @@ def _numbers(study, contact):
 
 
 def _curve_range(study, first, parts):
-    """Least and largest lambda ratio of the curves, those of the records furthest apart.
+    """Least and largest lambda ratio of the curves by theory, of the records furthest apart.
 
     Under uneven films, and where the oil answers the surfaces, each record has its own contacts.
     """

@@ -41,7 +41,7 @@ log = logging.getLogger(__name__)
 LONGEST_STEP = 0.25
 """Longest time in which the circuit is taken to change little, over the filter's time constant."""
 MOST_PARTS = 32
-"""Most parts of a time step: with more, a filter that is much faster changes nothing."""
+"""Most parts of a time step, for the sake of memory where the filter is far faster."""
 TOGETHER = 16
 """Number of operating points whose contact of lines at all time steps is in memory at once."""
 _MOTION = "entrainment_speed", "slide_to_roll_ratio"

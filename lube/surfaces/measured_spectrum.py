@@ -304,17 +304,14 @@ def lay_of_map(
         Angle between the ridges and the first axis, to a tenth of a degree.
     """
     _, direction = anisotropy(power, lengths, q_max)
-
-    def waves_inside(ratio, angle):
-        return _Waves.inside(power, lengths, q_max, cutoffs, (ratio, angle))
-
-    waves = waves_inside(1.0, math.degrees(direction) + 90.0)
-    lay, _ = waves.likeliest(math.degrees(direction) + 90.0)
+    first = math.degrees(direction) + 90.0
+    every = _Waves.of_map(power, lengths, q_max, cutoffs)
+    lay, _ = every.inside(1.0, first).likeliest(first)
     shortest = _along_ridges(lengths, lay[1]) * q_max / (2.0 * np.pi)
     if _ratio(lay) > LONG_RIDGES * shortest:
         last = lay
         for _ in range(REPEATS):
-            waves = waves_inside(min(_ratio(last), shortest / LEAST_ROWS), last[1])
+            waves = every.inside(min(_ratio(last), shortest / LEAST_ROWS), last[1])
             last, misfit = waves.likeliest(last[1])
         lay = last if waves.least_misfit(lay) > misfit + LEAST_GAIN else lay
     angle = (lay[1] + 90.0) % 180.0 - 90.0  # ridges at 100 degrees are at -80
@@ -338,6 +335,10 @@ class _Waves:
 
     Attributes
     ----------
+    lengths : tuple of float
+        Measured length in both directions, m.
+    q_max : float
+        Largest wavenumber, rad/m.
     along, across : numpy.ndarray
         Wave vectors along both axes, rad/m.
     square : numpy.ndarray
@@ -346,24 +347,32 @@ class _Waves:
         Powers before the filters.
     """
 
+    lengths: Pair
+    q_max: float
     along: Array
     across: Array
     square: Array
     powers: Array
 
     @classmethod
-    def inside(cls, power, lengths, q_max, cutoffs, lay):
-        """Choose waves of which the isotropic surface's waves by some lay are not above `q_max`."""
+    def of_map(cls, power, lengths, q_max, cutoffs):
+        """Take the waves of a map of which the filters leave enough."""
         along, across = np.broadcast_arrays(*_wave_vectors(power, lengths))
         square = (along**2 + across**2) / q_max**2
         transfer = power_transfer(q_max * np.sqrt(square), *cutoffs)
+        used = (square <= 1.0) & (power > 0.0) & (transfer > LEAST_PART)
+        of_waves = along[used], across[used], square[used], power[used] / transfer[used]
+        return cls(lengths, q_max, *of_waves)
+
+    def inside(self, ratio, angle):
+        """Choose waves that are those of the isotropic surface up to `q_max`, by some lay."""
         # The window blurs ridges longer than half of the map.
-        cosine, sine = cosine_and_sine(lay[1])
-        ridges = np.abs(along * cosine + across * sine)
-        used = ridges >= 2.0 * np.pi * LEAST_WAVES / _along_ridges(lengths, lay[1])
-        used &= (square <= 1.0) & (power > 0.0) & (transfer > LEAST_PART)
-        used &= unstretched(along, across, *lay) <= q_max
-        return cls(along[used], across[used], square[used], power[used] / transfer[used])
+        cosine, sine = cosine_and_sine(angle)
+        ridges = np.abs(self.along * cosine + self.across * sine)
+        used = ridges >= 2.0 * np.pi * LEAST_WAVES / _along_ridges(self.lengths, angle)
+        used &= unstretched(self.along, self.across, ratio, angle) <= self.q_max
+        of_waves = (self.along, self.across, self.square, self.powers)
+        return _Waves(self.lengths, self.q_max, *(one[used] for one in of_waves))
 
     def misfit(self, lay, blur=0.0):
         """Misfit of a lay, with the part b that a blur has, over the largest wavenumber squared."""
