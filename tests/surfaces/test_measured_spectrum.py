@@ -6,16 +6,11 @@ import numpy as np
 import pytest
 import scipy.fft
 from example_surface import rolled_off_surface
+from ridges import stretched_map
 
 from lube.errors import DataError
-from lube.surfaces.lay import unstretched
 from lube.surfaces.measured_spectrum import (
-    MOST_ANISOTROPY,
-    anisotropy,
-    hann,
     line_spectrum,
-    map_power,
-    profile_density,
 )
 from lube.surfaces.spectra import power_spectrum
 from lube.surfaces.spectrum_table import band_table, power_law_integral
@@ -79,23 +74,6 @@ def test_integral_without_a_window_is_the_mean_square():
     wave_vector, density = power_spectrum(heights, 1e-6)
     found = np.sum(density) * wave_vector[0]
     assert found == pytest.approx(np.mean(heights**2), rel=1e-12)
-
-
-def test_a_sine_has_its_mean_square_at_its_wave_vector():
-    x = 1e-6 * np.arange(4000)
-    sine = 0.3e-6 * np.sin(2 * np.pi * x / 5e-5 + 1.0)
-    wave_vector, density = profile_density(sine, 1e-6)
-    assert np.sum(density) * wave_vector[0] == pytest.approx(0.045e-12, rel=0.01)
-    near = np.abs(wave_vector - 2 * np.pi / 5e-5) < 2.5 * wave_vector[0]
-    assert np.sum(density[near]) * wave_vector[0] == pytest.approx(0.045e-12, rel=1e-6)
-
-
-@pytest.mark.parametrize("shape", [(128, 96), (101, 128), (64, 65)])
-def test_the_power_of_a_map_is_its_windowed_mean_square(shape):
-    heights = np.random.default_rng(2).normal(size=shape)
-    windowed = heights * np.outer(hann(shape[0]), hann(shape[1]))
-    expected = np.mean(windowed**2) - np.mean(windowed) ** 2
-    assert map_power(heights).sum() == pytest.approx(expected, rel=1e-12)
 
 
 # --- Known surfaces ----------------------------------------------------------------------
@@ -169,38 +147,6 @@ def test_filters_of_a_profile_become_those_of_the_surface():
     )
 
 
-@pytest.mark.parametrize("stretch", [1.0, 1.4, 2.0, 5.0])
-def test_anisotropy_is_that_of_a_stretched_surface(stretch):
-    """C2D ~ (q_x^2 + s^2 q_y^2)^-(H + 1) on every ring: waves along x are stronger."""
-    points, hurst = 512, 0.8
-    x, y = np.meshgrid(
-        scipy.fft.fftfreq(points, 1 / points), np.arange(points // 2 + 1), indexing="ij"
-    )
-    waves = np.maximum(np.hypot(x, stretch * y), 1.0)
-    noise = scipy.fft.rfft2(np.random.default_rng(8).normal(size=(points, points)))
-    heights = scipy.fft.irfft2(noise * waves ** (-hurst - 1.0), (points, points))
-    angle = np.linspace(0, np.pi, 20_001)
-    density = (np.cos(angle) ** 2 + (stretch * np.sin(angle)) ** 2) ** (-hurst - 1.0)
-    expected = np.mean(density * np.cos(2 * angle)) / np.mean(density)
-    measure, direction = anisotropy(map_power(heights), (LENGTH, LENGTH), 8e5)
-    assert measure == pytest.approx(expected, abs=0.06)
-    assert (measure > MOST_ANISOTROPY) == (stretch > 1.5)
-    assert stretch == 1.0 or abs(direction) < 0.1
-
-
-def test_anisotropy_finds_the_direction():
-    surface = drawn_map(0.8, 5, 512).heights
-    lengths = (LENGTH, LENGTH)
-    assert anisotropy(map_power(surface), lengths, 8e5)[0] < 0.06
-    # Scratches along the first axis: a row's heights hardly change along it.
-    ground = np.cumsum(np.random.default_rng(1).normal(size=(512, 512)), axis=0)
-    measure, direction = anisotropy(map_power(ground), lengths, 8e5)
-    assert measure > 2 * MOST_ANISOTROPY
-    assert abs(direction) == pytest.approx(np.pi / 2, abs=0.05)
-    turned, direction = anisotropy(map_power(ground.T.copy()), lengths, 8e5)
-    assert turned == pytest.approx(measure, rel=0.05) and abs(direction) < 0.05
-
-
 # --- The measured rms height -------------------------------------------------------------
 
 
@@ -228,74 +174,6 @@ def test_drawn_lines_have_the_rms_height_of_a_narrower_band():
 
 
 # --- Surfaces with a lay -------------------------------------------------------------------
-
-
-def stretched_map(ratio, angle, seed, points=512, hurst=0.7):
-    """A map of ridges, cut from a larger periodic one; and the density of its isotropic surface."""
-    number, spacing = 2 * points, LENGTH / points
-    along = 2 * np.pi * np.fft.fftfreq(number, spacing)[:, None]
-    across = 2 * np.pi * np.fft.rfftfreq(number, spacing)
-    own = unstretched(along, across, ratio, angle)
-
-    def shape(q):
-        return np.maximum(q * ROLL_OFF / (2 * np.pi), 1.0) ** (-2 * hurst - 2)
-
-    # All waves that the spectrum may have, and some shorter ones.
-    power = np.where(np.hypot(along, across) < 0.8 * np.pi / spacing, shape(own), 0.0)
-    power[0, 0] = 0.0
-    noise = np.random.default_rng(seed).normal(size=(number, number))
-    heights = scipy.fft.irfft2(np.fft.rfft2(noise) * np.sqrt(power), noise.shape)
-    weights = np.where(across > 0.0, 2.0, 1.0)
-    # White noise of variance 1 has this mean square after the filter.
-    mean_square = np.sum(weights * power) / number**2
-    heights *= RMS / np.sqrt(mean_square)
-    cell = (2 * np.pi / (number * spacing)) ** 2
-    level = RMS**2 / np.sum(weights * power) / cell
-    surface = Topography("ridges.x3p", heights[:points, :points], (spacing,) * 2)
-    return surface, lambda q: 2 * np.pi * q * shape(q) * level / ratio
-
-
-@pytest.mark.parametrize(("ratio", "angle"), [(1.0, 0.0), (2.0, 90.0), (5.0, 0.0), (10.0, -70.0)])
-def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
-    for seed in range(3):
-        surface, _ = stretched_map(ratio, angle, seed)
-        found = spectrum_of(surface, LAY)
-        assert found.lay_ratio == pytest.approx(ratio, rel=0.12)
-        if ratio > 1.0:
-            assert abs((found.lay_angle - angle + 90.0) % 180.0 - 90.0) < 1.0
-
-
-@pytest.mark.parametrize(("ratio", "shortest"), [(20.0, 4), (20.0, 2), (10.0, 1), (5.0, 1)])
-def test_ridges_longer_than_the_map_are_not_found_too_long(ratio, shortest):
-    """The surface has no waves beyond some points across its ridges, as drawn ones have not."""
-    number = np.arange(2048)
-    along, across = (np.minimum(number, 2048 - number) / 2048.0)[:, None], number[:1025] / 2048.0
-    own = unstretched(along, across, ratio, 0.0)
-    band = (own >= 1.0 / 200.0) & (own <= 1.0 / shortest)
-    density = np.where(band, np.maximum(own, 1e-9) ** -3.4, 0.0)
-    noise = np.random.default_rng(8).normal(size=(2048, 2048))
-    heights = scipy.fft.irfft2(scipy.fft.rfft2(noise) * np.sqrt(density), noise.shape)
-    surface = Topography("ground.x3p", RMS * heights[:1024, :1024] / np.std(heights), (1e-6,) * 2)
-    assert spectrum_of(surface, LAY).lay_ratio == pytest.approx(ratio, rel=0.15)
-
-
-@pytest.mark.parametrize("ratio", [4.0, 8.0])
-def test_filters_and_blur_do_not_shorten_ridges(ratio):
-    """They take most from the waves across ridges, which are the shortest."""
-    found = {"filtered": [], "blurred": []}
-    for seed in range(4):
-        surface, _ = stretched_map(ratio, 30.0, seed)
-        short = replace(LAY, short_cutoff=8 * surface.spacing[0])
-        found["filtered"].append(spectrum_of(surface, short).lay_ratio)
-        heights = scipy.ndimage.gaussian_filter(surface.heights, 1.3)
-        found["blurred"].append(spectrum_of(replace(surface, heights=heights), LAY).lay_ratio)
-    for ratios in found.values():
-        assert np.mean(ratios) == pytest.approx(ratio, rel=0.12)
-
-
-def test_ridges_along_rolling_are_not_at_minus_zero_degrees():
-    surface, _ = stretched_map(5.0, 0.0, seed=5)
-    assert str(spectrum_of(surface, LAY).lay_angle) == "0.0"
 
 
 @pytest.mark.parametrize("settings", [LAY, replace(LAY, long_cutoff=3e-4)])
