@@ -41,6 +41,8 @@ _COLUMNS = {
     "second_surface_speed": "m/s",
 }
 """Columns of a table of duty points, each with the unit that it is converted to."""
+NEAR = 1e-3
+"""Shares may miss the whole by this much, by rounding, without a remark."""
 _NUMBER = re.compile(r"\s*[-+]?[\d.]+\s*([ %]|$)")
 """Beginning of a number with or without unit, but not of a name such as ``2nd gear``."""
 _OF_PAIR = "probability_pair_lower", "probability_pair_upper"
@@ -98,8 +100,9 @@ def duty(
     -------
     Answer
         The variables of `lube.contact_probability` over ``point``, the columns of `points`, and
-        ``share`` (normalised). For the whole cycle: ``whole_probability``, the share of time with
-        metal contact, counted; ``whole_tail_probability``, the same by importance sampling; and
+        ``share`` (divided by the sum of all). For the whole cycle: ``whole_probability``, the share
+        of time with metal contact, counted; ``whole_tail_probability``, the same by importance
+        sampling; and
         ``whole_tail_rate``, breakthroughs per hour; each with ``_lower`` and ``_upper``. These
         limits are those of the mean over pairs of rollers. All points have the same pairs, so the
         whole cycle is computed on each pair first. For the surface they are
@@ -129,7 +132,8 @@ def duty(
     True
     """
     columns, labels = _columns(points)
-    columns["share"] = share = _shares(columns)
+    columns["share"], remark = _shares(columns)
+    share = columns["share"]
     gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
     choices = Choices.of(film_formula, gap, inlet, load_sharing, contact_model=contact_model)
     choices = replace(choices, slip=_slip(columns))
@@ -149,16 +153,20 @@ def duty(
         # Weighted first: the samples are the same at all points.
         of_cycle = _weighted(samples, share)
         whole |= assumed.limits(of_cycle, "whole_assumed_probability")
-    found = xr.Dataset(columns | dict(parts.data_vars) | whole, attrs=parts.attrs)
+    remarks = "\n".join(filter(None, (parts.attrs.get("remarks"), remark)))
+    found = xr.Dataset(columns | dict(parts.data_vars) | whole, attrs={"remarks": remarks})
     return _with_labels(with_remarks(found, table, rollers, choices.models), labels)
 
 
 def _shares(columns):
-    """Share of time of each point; together they are 1."""
-    share = columns.get("share", xr.ones_like(columns["force"]))
-    if not share.sum() > 0.0:
+    """Share of time of each point, together 1; and a remark if those given are less."""
+    share = columns.get("share", xr.full_like(columns["force"], 1.0 / columns["force"].size))
+    total = share.sum().item()
+    if not total > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
-    return share / share.sum()
+    is_part = total < 1.0 - NEAR  # more than 1 are hours, or other weights
+    remark = f"share: got {total:.3g} together, and the rest of the time is left out"
+    return share / total, remark if is_part else ""
 
 
 def _weighted(values, share):
@@ -273,7 +281,7 @@ def _frame(points):
 
 
 def _with_units(values):
-    """Quantities of a list, a pair, or an array with a unit, each with its unit."""
+    """Quantities of a list, a pair, or an array with a unit, each as text with its unit."""
     if isinstance(values, tuple) and len(values) == 2 and isinstance(values[1], str):
         numbers, units = values
         if not isinstance(numbers, str):
@@ -281,7 +289,13 @@ def _with_units(values):
             return texts if np.ndim(numbers) else texts[0]
     # Pandas would drop the units.
     is_list = isinstance(values, list | tuple) or np.ndim(getattr(values, "magnitude", None)) > 0
-    return np.fromiter(values, object, len(values)) if is_list else values
+    return np.fromiter(map(_as_text, values), object, len(values)) if is_list else _as_text(values)
+
+
+def _as_text(value):
+    """Quantity as text, as other values of its column may be texts."""
+    number = getattr(value, "magnitude", None)
+    return value if number is None else f"{float(number)!r} {value.units}"
 
 
 def _read(path):

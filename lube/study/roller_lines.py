@@ -90,7 +90,7 @@ def _rough_line(rollers, roughness, name, rms, spacing, width):
     if roller.topography and roller.topography.is_line:
         longest = roller.topography.long_cutoff or points * spacing
     roll_off = (None if roller.topography else own.roll_off_wavelength) or longest
-    _check_band(longest, shortest, roll_off, roughness.points, spacing, key)
+    _check_band(own, (longest, shortest, roll_off), roughness.points, spacing, key)
     _check_distribution(own, key)
     if roller.topography:
         grid = points, spacing, (longest, shortest)
@@ -217,18 +217,19 @@ def _length(value):
     return with_unit(value, "m", 3)
 
 
-def _check_band(longest, shortest, roll_off, points, spacing, key):
+def _check_band(own, wavelengths, points, spacing, key):
+    longest, shortest, roll_off = wavelengths
     if shortest < 2.0 * spacing * (1.0 - 1e-9):
         raise StudyError(
             f"roughness.points: got {points}, too coarse a grid: its spacing is "
             f"{_length(spacing)}, need at most half the shortest wavelength of {_length(shortest)}"
         )
     if shortest >= longest:
-        least = math.ceil(points * shortest / longest) + 1
-        raise StudyError(
-            f"{key('shortest_wavelength')}: got {_length(shortest)}, need less than the longest, "
-            f"{_length(longest)}; if it is given in points, need {least} roughness.points or more"
-        )
+        needed = f"need less than the longest, {_length(longest)}"
+        if isinstance(own.shortest_wavelength, str):  # in points
+            least = math.ceil(points * shortest / longest) + 1
+            needed += f", that is {least} roughness.points or more"
+        raise StudyError(f"{key('shortest_wavelength')}: got {_length(shortest)}, {needed}")
     if not shortest * (1.0 - 1e-9) <= roll_off <= longest * (1.0 + 1e-9):
         raise StudyError(
             f"{key('roll_off_wavelength')}: got {_length(roll_off)}, need one from the shortest to "

@@ -41,8 +41,9 @@ def _range(units, example, **limits):
         match = re.fullmatch(r"\s*(?:\+-\s*([^\s+-].*)|(\S.*?)\s+to\s+(\S.*))", str(value))
         if match is None or (match[1] and not units):
             raise LubeError(f"got {shown(value)}, need a {needed}")
-        ends = [f"-{match[1]}", match[1]] if match[1] else [match[2], match[3]]
-        lower, upper = (read_number(end.strip(), units, **limits) for end in ends)
+        # The upper end first: messages quote what is wrong with it, and `+- A` has no lower one.
+        ends = [match[1], f"-{match[1]}"] if match[1] else [match[3], match[2]]
+        upper, lower = (read_number(end.strip(), units, **limits) for end in ends)
         if lower >= upper:
             raise LubeError(f"got {shown(value)}, need the lower end first")
         return (lower / 100.0, upper / 100.0) if units == "%" else (lower, upper)

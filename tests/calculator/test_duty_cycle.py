@@ -48,6 +48,13 @@ def test_the_whole_of_one_point_is_that_point(rollers, oil):
         assert found[f"whole_probability{ending}"].item() == pytest.approx(expected, rel=1e-12)
 
 
+def test_time_that_is_left_out_is_remarked(rollers, oil):
+    point = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
+    remarks = lube.duty(point | {"share": "70 %"}, rollers, oil, realisations=1).attrs["remarks"]
+    assert "share: got 0.7 together, and the rest of the time is left out" in remarks
+    assert "share: " not in lube.duty(point, rollers, oil, realisations=1).attrs["remarks"]
+
+
 def test_a_point_of_no_time_does_not_count_even_if_its_film_is_not_known(rollers, oil):
     """The film of so slow a speed is not computed."""
     slow = POINTS | {"speed [rpm]": [100.0, 60.0, 1e-5]}
@@ -69,7 +76,8 @@ def test_lists_and_arrays_of_quantities_keep_their_units(rollers, oil):
     levels = {"force": ([0.4, 1.6], "kN"), "temperature": ([60, 80], "degC")}
     arrays = {name: of(*level) for name, level in levels.items()} | {"speed": of([100, 60], "rpm")}
     lists = {name: list(array) for name, array in arrays.items()}
-    for points in (arrays, lists, levels | {"speed": (100, "rpm")}):
+    mixed = lists | {"force": [of(0.4, "kN"), "1600 N"]}
+    for points in (arrays, lists, levels | {"speed": (100, "rpm")}, mixed):
         found = lube.duty(points, rollers, oil, **RUNS)
         assert found["force"].values.tolist() == [400.0, 1600.0]
         assert found["temperature"].values.tolist() == [60.0, 80.0]
