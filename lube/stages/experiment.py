@@ -27,6 +27,9 @@ from lube.units import with_unit
 
 log = logging.getLogger(__name__)
 
+FAR = 10.0
+"""A record whose force or speed is so many times outside the study's levels is remarked on."""
+
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``experiment.nc``; see `lube.stages`."""
@@ -151,6 +154,7 @@ def evaluated_records(manifest: Manifest, study: Study) -> tuple[list[dict], lis
             f"turn, but here none is seen to, at any speed within {100.0 * SPAN:g} % of the one "
             "stated: the speed may be wrong, or the roughness changes (rig.drift)"
         )
+    remarks += _far_outside(rows, study)
     passages = [(row, _passage_time(row, study)) for row in rows]
     if short := [(row, time) for row, time in passages if row.get("duration", np.inf) < time]:
         (row, time), names = short[0], [row["record"] for row, _ in short]
@@ -160,6 +164,20 @@ def evaluated_records(manifest: Manifest, study: Study) -> tuple[list[dict], lis
             "shows whether they touch at one place, and not how often"
         )
     return rows, refused, remarks
+
+
+def _far_outside(rows, study):
+    """Yield a remark on records whose force or speed is far from the study's."""
+    for name, unit in (("force", "N"), ("speed", "rpm")):
+        levels = getattr(study.operating_grid, name)
+        least, most = min(levels), max(levels)
+        if far := [row for row in rows if not least / FAR <= row[name] <= most * FAR]:
+            names = [row["record"] for row in far]
+            yield (
+                f"{_first_of(names)}: the {name} is {with_unit(far[0][name], unit)}, but the "
+                f"study's are from {with_unit(least, unit)} to {with_unit(most, unit)}: its unit "
+                "may be wrong"
+            )
 
 
 def _first_of(names):

@@ -240,6 +240,14 @@ def test_a_speed_that_is_stated_far_off_is_remarked_on(measured, tmp_path):
     assert both.startswith("fast.csv (manifest.csv: line 2) and 1 more: rollers of one size")
 
 
+def test_a_force_in_another_unit_is_remarked_on(measured):
+    remarks = measured("wave.csv,800000,100,40", "wave.csv,800,100,40").remarks
+    assert remarks.startswith(
+        "wave.csv (manifest.csv: line 2): the force is 800000 N, but the study's are from "
+    )
+    assert "its unit may be wrong" in remarks
+
+
 def test_a_speed_within_its_tolerance_is_left_as_stated(measured, tmp_path):
     written(tmp_path / "nearly.csv", turning(99.6, 20.0), 1e-3)
     written(tmp_path / "slow.csv", turning(97.0, 20.0), 1e-3)
