@@ -16,6 +16,7 @@ from lube.surfaces import surface_statistics as statistics
 from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
+from lube.units import with_unit
 
 STANDARD_HEIGHTS = np.linspace(-6.0, 6.0, 61)
 """Middles of the bins of heights, in rms heights."""
@@ -46,7 +47,7 @@ def measured_surfaces(
     -------
     xarray.Dataset
         The ``surface`` file of `lube.schema`. Its attribute ``remarks`` names waves that show the
-        instrument, and surfaces that are not self-affine.
+        instrument, spikes, and surfaces that are not self-affine.
 
     Raises
     ------
@@ -59,9 +60,11 @@ def measured_surfaces(
         # Both rollers may have the same topography.
         key = topography.key, line.q_min, line.q_max, line.rms_height
         if key not in known:
-            known[key] = _surface(topography, line, hurst)
-        parts.append(known[key])
-        remarks += [f"{name} roller: {text}" for text in _remarks(known[key], line)]
+            surface = _surface(topography, line, hurst)
+            known[key] = surface, [*_remarks(surface, line), *_spikes(topography)]
+        surface, texts = known[key]
+        parts.append(surface)
+        remarks += [f"{name} roller: {text}" for text in texts]
     rollers = [ROLLER_NUMBERS[ROLLERS.index(name)] for name in topographies]
     # Spectra have different numbers of waves; NaN stands for the missing ones.
     table = xr.concat(parts, xr.Variable("roller", rollers), join="outer")
@@ -110,6 +113,18 @@ def _remarks(surface, line):
     hurst = surface["hurst_exponent"].item()
     if hurst <= 0.0 or hurst >= 1.0:
         yield f"its Hurst exponent, {hurst:.2g}, is not between 0 and 1: it is not self-affine"
+
+
+def _spikes(topography):
+    """Yield a remark on spikes, which are sought before waves are taken out."""
+    as_measured = topography.model_copy(update={"long_cutoff": None, "short_cutoff": None})
+    found = statistics.spikes(prepared(as_measured).heights)
+    if found.size:
+        yield (
+            f"{found.size} points stick out of their neighbours, by up to "
+            f"{with_unit(found.max(), 'm', 2)}: if they are spikes of the instrument, they count "
+            "as short waves; make them holes, and set holes: interpolate"
+        )
 
 
 def _density(spectrum):

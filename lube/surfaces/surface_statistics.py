@@ -15,6 +15,7 @@ are longer than its waves and so nearly independent.
 from typing import NamedTuple
 
 import numpy as np
+import scipy.ndimage
 import scipy.special
 
 from lube.surfaces.spectrum_table import LineSpectrum
@@ -41,6 +42,10 @@ LEAST_DENSITIES = 6
 LEAST_CHANGE = 2.0
 """A roll-off within this factor of either end of the spectrum cannot be distinguished from no
 roll-off."""
+
+
+SPIKE = 5.0
+"""A spike differs from the median of its neighbours so many times as far as 99 % of the points."""
 
 
 class Estimate(NamedTuple):
@@ -243,6 +248,30 @@ def height_distribution(heights: Array) -> dict[str, Estimate]:
     names = ("rms_height", "mean_deviation", "skewness", "kurtosis")
     limits = zip(values, values - half, values + half, strict=True)
     return {name: Estimate(*map(float, each)) for name, each in zip(names, limits, strict=True)}
+
+
+def spikes(heights: Array) -> Array:
+    """Heights of spikes, points that stick out of their neighbours by more than the rms height.
+
+    Parameters
+    ----------
+    heights : numpy.ndarray
+        Shape (n,) or (nx, ny), m, without form and holes.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (spikes,), m, above or below the neighbours.
+
+    Examples
+    --------
+    >>> heights = np.random.default_rng(1).normal(size=(64, 64))
+    >>> heights[[3, 20], [7, 60]] = 50.0
+    >>> spikes(heights).size
+    2
+    """
+    away = np.abs(heights - scipy.ndimage.median_filter(heights, size=3, mode="nearest"))
+    return away[away > max(SPIKE * np.quantile(away, 0.99), np.std(heights))]
 
 
 def _power_sums(block):

@@ -63,6 +63,13 @@ def test_a_band_that_the_instrument_resolves_needs_no_remark(tmp_path, heights):
     assert found.attrs["remarks"] == "" and np.isnan(found["resolved_wavelength"]).all()
 
 
+def test_spikes_are_counted(tmp_path, heights):
+    spiked = heights.copy()
+    spiked[[30, 200, 301], [77, 400, 511]] += 3e-6
+    remarks = described(tmp_path, spiked).attrs["remarks"]
+    assert "first roller: 3 points stick out of their neighbours, by up to 3" in remarks
+
+
 def test_a_band_of_few_densities_has_no_fits(tmp_path, heights):
     found = described(tmp_path, heights, "190 um")
     assert np.isnan(found["hurst_exponent"]).all() and found.attrs["remarks"] == ""
