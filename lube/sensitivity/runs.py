@@ -4,6 +4,7 @@ All runs draw the same random numbers, so that they differ by the quantities alo
 Gaussian; if heights are not, the film is that in which Gaussian ones touch as often.
 """
 
+from dataclasses import replace
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -31,8 +32,13 @@ TIMES = 9
 """How many times as many they then are."""
 SURFACE_SEEDS = 2
 """Sets that have surfaces of their own; the others share these."""
-FEWER_SURFACES = 16
-"""Surfaces in each set are this many times fewer than elsewhere."""
+FEWER_SURFACES = 16, 2
+"""Surfaces in each set are this many times fewer than elsewhere: first, and then where that does
+not tell how often the layer breaks."""
+APART = 2.0
+"""Ratio of the probabilities of two sets above which more surfaces are sampled."""
+FEW_BREAK = 0.1
+"""Part of the contacts that break their layer below which more surfaces are sampled."""
 SIZES = {"line": (1024, 2), "answered line": (256, 2), "surface": (32, 12), "sum": (4, 24)}
 """Numbers of samples of a model, and of operating points of each.
 
@@ -259,14 +265,8 @@ def _probabilities(deviating, model, values, film):
     # Under films that are over a factor, lines break as higher ones do if their layer is weaker.
     weaker = film.get("roughness_factor", 1.0)
     if model.contact_model == "surface":
-        found = []
-        for seed in range(SURFACE_SEEDS):
-            pair = RoughPair(spec, study.rollers.length, layer, study.seed + seed, model.gap)
-            # The scatter between so few surfaces is not needed.
-            with np.errstate(invalid="ignore", divide="ignore"):
-                contact = surface_contact(pair, film, 1, weaker, FEWER_SURFACES)
-            found.append(contact["breakthrough_probability"].values)
-        return np.stack([found[seed % SURFACE_SEEDS] for seed in range(SEEDS)], axis=1)
+        pair = RoughPair(spec, study.rollers.length, layer, study.seed, model.gap)
+        return _of_surfaces(pair, film, weaker)[:, np.arange(SEEDS) % SURFACE_SEEDS]
     windows = ContactWindows(spec, film, layer, model.gap, weaker)
 
     def sampled(some, numbers):
@@ -283,3 +283,25 @@ def _probabilities(deviating, model, values, film):
         more = sampled(windows[noisy], range(SEEDS * PAIRS, SEEDS * PAIRS * TIMES))
         mean[noisy] = np.concatenate([found[noisy], more], axis=2).mean(axis=2)
     return mean
+
+
+def _of_surfaces(pair, film, weaker):
+    """Probability of breakthrough of surfaces at some points, by each set that has its own."""
+    pairs = [replace(pair, seed=pair.seed + number) for number in range(SURFACE_SEEDS)]
+
+    def sampled(wanted, fewer):
+        # The scatter between so few surfaces is not needed.
+        with np.errstate(invalid="ignore", divide="ignore"):
+            each = [surface_contact(one, film, 1, weaker, fewer, wanted) for one in pairs]
+        return xr.concat(each, "set").transpose(..., "set")
+
+    few, more = FEWER_SURFACES
+    contact = sampled(None, few)
+    found = contact["breakthrough_probability"].values
+    least, most = found.min(axis=1), found.max(axis=1)
+    rare = (contact["breakthroughs"] < FEW_BREAK * contact["contacts"]).any("set").values
+    noisy = (most > APART * least) | (least == 0.0) | rare
+    if noisy.any():
+        wanted = film["film_thickness"].copy(data=noisy)
+        found[noisy] = sampled(wanted, more)["breakthrough_probability"].values[noisy]
+    return found

@@ -6,6 +6,8 @@ import xarray as xr
 from made import made
 from studies import CONFIG
 
+from lube.contact.rough_pair import RoughPair
+from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import study_windows
 from lube.digits import six_digits
 from lube.errors import DataError
@@ -140,6 +142,31 @@ def test_where_a_run_is_noisy_more_pairs_are_sampled(study, monkeypatch):
     # Nine times as many leave a third of the scatter.
     assert np.nanmean(many[known]) < 0.6 * np.nanmean(few[known])
     np.testing.assert_allclose(found[0].mean(axis=1), found[1].mean(axis=1), atol=0.3)
+
+
+def test_where_most_layers_hold_more_surfaces_are_sampled(study):
+    """Few surfaces show no contact, or one of very many, that breaks its layer."""
+    length = study.rollers.length
+    film = xr.Dataset(
+        {
+            "film_thickness": ("run", 2.83e-7 * np.array([2.0, 3.0, np.nan])),
+            "contact_half_width": ("run", np.full(3, study.rollers.contact_half_width(400.0))),
+            "reduced_modulus": study.rollers.reduced_modulus,
+        }
+    )
+    found, few, whole = [], [], []
+    for strength in (1.0, 5.0):
+        layer = study.boundary_layer
+        layer = layer.model_copy(update={"shear_strength": strength * layer.shear_strength})
+        pair = RoughPair(study.line_spec, length, layer, study.seed)
+        with np.errstate(invalid="ignore"):  # a single surface has no scatter
+            found.append(runs._of_surfaces(pair, film, 1.0))
+            few.append(surface_contact(pair, film, 1, fewer=runs.FEWER_SURFACES[0])[PROBABILITY])
+        whole.append(surface_contact(pair, film, 1)[PROBABILITY])
+    np.testing.assert_array_equal(found[0][:, 0], few[0])
+    assert (few[1] > 3.0 * whole[1])[:2].all()
+    assert found[1].mean(axis=1)[:2] == pytest.approx(whole[1].values[:2], rel=0.5)
+    assert np.isnan(found).all(axis=(0, 2)).tolist() == [False, False, True]
 
 
 def test_indices_are_parts_of_the_variance(result):
