@@ -131,11 +131,13 @@ def plan(
     records, pair = turns.values.ravel().tolist(), rollers.rough_pair(seed, gap)
     if model == "surface":
         contact = surface_contact(pair, table)
-        found, size, ratio = planning.on_surfaces(pair, table, contact, slip, records)
+        found, size, ratio, curve = planning.on_surfaces(pair, table, contact, slip, records)
         reading, realisations = planning.reading_of_surfaces(reading, found.probability), SURFACES
     else:
-        found, size, ratio = _on_lines(pair, table, realisations, slip, records)
-    error = planning.relative_error(found.probability, size, ratio[:, None], reading)
+        found, size, ratio, curve = _on_lines(pair, table, realisations, slip, records)
+    error = planning.relative_error(
+        found.probability, size, ratio[:, None], np.hypot(reading, curve)
+    )
     by_coefficient = _film_by_coefficient(oil, rollers, table, choices)
     widths = {}
     for name, deviation in _unknown(assumed, conditions_of(table, choices), table).items():
@@ -168,13 +170,14 @@ def _check_ridges(rig, model, rollers):
 
 
 def _on_lines(pair, table, realisations, slip, turns):
-    """Slopes, sample size and scatter of records of lines, as `planning.on_surfaces` finds them."""
+    """As `planning.on_surfaces`, of lines."""
     contact = ensemble(pair, table, realisations, slip)
     slower, width = min(speed_ratios(slip)), 2.0 * table["contact_half_width"]
     windows = pair.spec.independent_windows(width, slower)
     size = sample_size(contact["breakthrough_probability"], windows).ravel()
     found = planning.slopes(pair, table)
-    return found, size, planning.line_ratios(pair, table, slip, turns)
+    # The scatter between the realisations includes the error of the curve.
+    return found, size, planning.line_ratios(pair, table, slip, turns), 0.0
 
 
 def _film_by_coefficient(oil, rollers, table, choices):

@@ -19,9 +19,11 @@ from lube.contact.windows import ContactWindows
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
+from lube.inference import surface_records
 from lube.inference.record_scatter import crosswise
 from lube.inference.surface_scatter import revolution_size, surface_scatter
-from lube.statistics.confidence import jackknife_error, left_out
+from lube.schema import LIMITS
+from lube.statistics.confidence import error_of_limits, jackknife_error, left_out
 from lube.statistics.one_pair import distinct_alignments, persistent_share, quantile, scatter_ratio
 from lube.study.rollers import RollerPair
 from lube.types import Array, Values
@@ -153,7 +155,7 @@ def on_surfaces(
     turns: Sequence[float],
     drift: float = 0.0,
     threads: int | None = None,
-) -> tuple[Slopes, Array, Array]:
+) -> tuple[Slopes, Array, Array, Array]:
     r"""Sample the slopes of contact of surfaces, and find the scatter of records of one pair.
 
     Sampled are slopes of the number :math:`n = -\ln(1 - P)` of groups of contacts in the strip.
@@ -186,9 +188,13 @@ def on_surfaces(
         Effective sample size of a revolution of pure rolling.
     ratios : numpy.ndarray, shape (turns, P)
         Variance of a record's share over that of such a revolution.
+    curve_error : numpy.ndarray, shape (P,)
+        Relative standard error of the probability on the curve from which a film is read, for
+        which fewer surfaces are drawn than for `contact`.
     """
     contact = contact.transpose(*film["film_thickness"].dims)
-    share = contact["breakthrough_probability"].values.ravel()
+    limits = [contact[f"breakthrough_probability{end}"].values.ravel() for end in LIMITS]
+    share = limits[0]
     size = revolution_size(pair.spec, contact).ravel()
     records = np.repeat(np.array(turns)[:, None], share.size, axis=1)
     ratios = surface_scatter(
@@ -211,7 +217,9 @@ def on_surfaces(
         groups, own = -np.log1p(-changed), -np.log1p(-share) * (1.0 - share) / share
     by_film, by_layer, film_error, layer_error = (own * each for each in _slopes(groups, without))
     by_layer, layer_error = np.where(tells == holds, [by_layer, layer_error], 0.0)
-    return Slopes(share, by_film, by_layer, film_error, layer_error), size, ratios
+    with np.errstate(divide="ignore", invalid="ignore"):
+        curve_error = error_of_limits(limits) * np.sqrt(surface_records.FEWER) / share
+    return Slopes(share, by_film, by_layer, film_error, layer_error), size, ratios, curve_error
 
 
 def _slopes(changed, without):

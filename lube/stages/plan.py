@@ -73,7 +73,7 @@ def _expected(scatter, by_coefficient, unknown):
     `scatter` is from `_of_lines` or `_of_surfaces`. `unknown` has, by the name of half-widths, the
     standard deviation of ln P by all that is not known.
     """
-    found, size, ratios, read, ensemble = scatter
+    found, size, ratios, read, curve, ensemble = scatter
     values = {
         "breakthrough_probability": found.probability,
         "slope_by_film": found.by_film,
@@ -83,7 +83,8 @@ def _expected(scatter, by_coefficient, unknown):
         "film_by_coefficient": by_coefficient,
         "reading_error": read,
     }
-    errors = [planning.relative_error(found.probability, size, one, read) for one in ratios]
+    own = np.hypot(read, curve)
+    errors = [planning.relative_error(found.probability, size, one, own) for one in ratios]
     for name, deviation in unknown.items():
         error = np.hypot(errors, deviation)
         values[name] = planning.half_widths(found, by_coefficient, error, ensemble)
@@ -91,23 +92,24 @@ def _expected(scatter, by_coefficient, unknown):
 
 
 def _of_lines(study, inputs, film, slip, reading, threads):
-    """Find slopes and sample size, variances of records, error of the reading, and realisations.
+    """Find slopes and sample size, variances of records, errors of reading and curve, realisations.
 
     The sample size is for one revolution, and the variances are divided by that of one revolution.
+    The scatter between the realisations includes the error of the curve.
     """
     contact, pair = inputs["contact"], RoughPair.of(study)
     found = planning.slopes(pair, film, threads)
     size = _sample_size(contact, inputs["film"], slip)
     ratios = planning.line_ratios(pair, film, slip, TURNS, study.rig.drift, study.revolutions)
-    return found, size, ratios, reading, contact.sizes["realisation"]
+    return found, size, ratios, reading, 0.0, contact.sizes["realisation"]
 
 
 def _of_surfaces(study, inputs, film, slip, reading, threads):
     """As `_of_lines`, of surfaces; the sample size is that of a revolution of pure rolling."""
-    found, size, ratios = planning.on_surfaces(
+    found, size, ratios, curve = planning.on_surfaces(
         RoughPair.of(study), film, _areal(inputs, slip), slip, TURNS, study.rig.drift, threads
     )
-    return found, size, ratios, reading, SURFACES
+    return found, size, ratios, reading, curve, SURFACES
 
 
 def _areal(inputs, slip):

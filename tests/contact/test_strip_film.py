@@ -263,7 +263,7 @@ def test_films_read_from_single_pairs_scatter_as_planned(
     each = zip(share, strips, strict=True)
     scatter = [pair_deviation(p, *one.common(spec, LENGTH), side) for p, one in each]
     contact = contact.assign(pair_deviation=("film", scatter))
-    found, size, ratios = on_surfaces(*given, contact, 0.0, [1.0])
+    found, size, ratios, _ = on_surfaces(*given, contact, 0.0, [1.0])
     error = relative_error(share, size, ratios)
     expected = half_widths(found, np.ones(share.size), error, SAMPLED)[0, 0]
     seen = [shares(rollers, strip.films(surface.spacing[1])) for strip in strips]

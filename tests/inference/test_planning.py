@@ -245,7 +245,7 @@ def test_slopes_by_a_layer_that_some_contacts_hold_are_those_between_independent
 
 
 def test_the_scatter_of_surfaces_is_that_of_one_pair(thick, weak, contact, planned):
-    _, size, ratios = planned
+    _, size, ratios, _ = planned
     share = contact["breakthrough_probability"].values
     np.testing.assert_allclose(share * (1 - share) / size, contact["pair_deviation"] ** 2)
     np.testing.assert_allclose(ratios, np.outer([4.0, 1.0, 1.0], np.ones(3)))
@@ -262,7 +262,7 @@ def test_a_film_that_is_not_known_tells_nothing(thick, weak, contact):
     unknown = films.where(xr.DataArray(gone, dims="film")).assign(reduced_modulus=1.154e11)
     unknown = unknown.assign(contact_half_width=1.5e-4)
     here = contact.where(xr.DataArray(gone, dims="film"))
-    found, size, ratios = of_surfaces((spec, unknown), weak, here)
+    found, size, ratios, _ = of_surfaces((spec, unknown), weak, here)
     error = relative_error(found.probability, size, ratios)
     widths = half_widths(found, np.ones(3), error, 16)
     assert np.isnan(widths[:, :, 1]).all() and np.isfinite(widths[0, :, [0, 2]]).any()
