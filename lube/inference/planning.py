@@ -19,7 +19,6 @@ from lube.contact.windows import ContactWindows
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
-from lube.inference import surface_records
 from lube.inference.record_scatter import crosswise
 from lube.inference.surface_scatter import revolution_size, surface_scatter
 from lube.schema import LIMITS
@@ -189,8 +188,7 @@ def on_surfaces(
     ratios : numpy.ndarray, shape (turns, P)
         Variance of a record's share over that of such a revolution.
     curve_error : numpy.ndarray, shape (P,)
-        Relative standard error of the probability on the curve from which a film is read, for
-        which fewer surfaces are drawn than for `contact`.
+        Relative standard error of the probability, and so of the curve from which a film is read.
     """
     contact = contact.transpose(*film["film_thickness"].dims)
     limits = [contact[f"breakthrough_probability{end}"].values.ravel() for end in LIMITS]
@@ -218,7 +216,7 @@ def on_surfaces(
     by_film, by_layer, film_error, layer_error = (own * each for each in _slopes(groups, without))
     by_layer, layer_error = np.where(tells == holds, [by_layer, layer_error], 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        curve_error = error_of_limits(limits) * np.sqrt(surface_records.FEWER) / share
+        curve_error = error_of_limits(limits) / share
     return Slopes(share, by_film, by_layer, film_error, layer_error), size, ratios, curve_error
 
 

@@ -11,7 +11,12 @@ import xarray as xr
 
 from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import curvature_moments, surface_moments
-from lube.contact.surface_strip import mean_breaking_curvature, strip_films, surface_contact
+from lube.contact.strip_sampling import WITHOUT
+from lube.contact.surface_strip import (
+    mean_breaking_curvature,
+    strip_films,
+    surface_contact,
+)
 from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_responses
 from lube.inference.at_records import film_at_records
@@ -20,8 +25,9 @@ from lube.inference.surface_scatter import revolution_size, surface_scatter
 from lube.physics.excursions import expected_contacts
 from lube.physics.summits import sharp_surface_summit_share
 from lube.schema import LIMITS, values_with_limits, with_dims
-from lube.statistics.confidence import error_of_limits
+from lube.statistics.confidence import error_of_limits, jackknife_error
 from lube.statistics.curves import contact_curve
+from lube.statistics.one_pair import quantile
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import Study
 from lube.types import Array, Datasets
@@ -91,12 +97,13 @@ def surfaces_at_records(
             pair, some, own[0, records], slips[records], turns[records], study.rig.drift
         )
         some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
-        found = _curves(study, some, pair.layer.strength / strengths, threads)
-        curves[..., records], of_layers[..., records] = found
-    anchored = _anchored(curves, own, np.log(ratios), np.log(own_ratios))
+        weaker = pair.layer.strength / strengths
+        found, without, of_layers[..., records] = _curves(study, some, weaker, threads)
+        logs = np.log(ratios), np.log(own_ratios[records])
+        found[:3] = _anchored(found, without, own[:, records], *logs)
+        curves[..., records] = found
     few = of_layers[strengths == pair.layer.strength]
-    of_layers = _with_groups(of_layers, _groups(anchored[0, LAYER_FILMS]) / _groups(few))
-    curves[:3] = anchored
+    of_layers = _with_groups(of_layers, _groups(curves[0, LAYER_FILMS]) / _groups(few))
     by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
     found = {
         "film_formula": films["film_formula"].values,
@@ -122,7 +129,8 @@ def _at_films(study, first, inputs, threads):
     found, here = np.empty((4, row_of.size)), row_of >= 0
     found[:, here] = known[:, row_of[here]]
     others = _off_grid(study, inputs["experiment"].isel(record=~here), first.isel(record=~here))
-    found[:, ~here] = _sampled(study, others, threads)
+    if others.sizes["record"]:
+        found[:, ~here] = _numbers(study, _sampled(study, others, threads))
     parts = [(np.full(here.size, True), first)]
     if study.gap.is_answered:  # the responses of the film are over other wavelengths
         parts = [(here, grid.isel(record=row_of[here])), (~here, others)]
@@ -130,28 +138,42 @@ def _at_films(study, first, inputs, threads):
 
 
 def _curves(study, films, weaker, threads):
-    """Numbers as from `_numbers` at the films of curves, and probabilities with weaker layers."""
+    """Numbers as from `_numbers` at the films of curves, and probabilities with weaker layers.
+
+    Between them are the numbers of groups of contacts without each of the surfaces.
+    """
     found, few = _sampled(study, films, threads, FEWER), films.isel(curve_film=LAYER_FILMS)
-    of_layers = [_sampled(study, few, threads, LAYER_FEWER, one)[0] for one in weaker]
-    return found, of_layers
+    of_layers = [_sampled(study, few, threads, LAYER_FEWER, one) for one in weaker]
+    shares = [one["breakthrough_probability"].values for one in of_layers]
+    return _numbers(study, found), found[WITHOUT].values, shares
 
 
-def _anchored(curves, own, log_ratios, log_own):
+def _anchored(curves, without, own, log_ratios, log_own):
     """Curves with as many groups of contacts at the film of each record as were sampled there.
 
     A curve is sampled on the first of the same surfaces, so what it shows too much or too little
-    there it shows at other films, too. This corrects the error of interpolation as well. Numbers of
-    groups that are not known within a factor of two, as where contact is nearly certain, correct
-    nothing.
+    there it shows at other films, too. This corrects the error of interpolation as well. At the
+    film of the record the curve is as exact as the number sampled there, and at others the error of
+    their ratio is added. Numbers of groups that are not known within a factor of two, as where
+    contact is nearly certain, correct nothing.
     """
-    own, lower, upper = own[:3]
-    factors = np.ones(own.size)
+    found, (own, lower, upper) = curves[:3].copy(), own[:3]
     known = (own > 0.0) & (own < ANCHORED) & (_groups(upper) < 2.0 * _groups(lower))
     for record in np.flatnonzero(known):
         curve = contact_curve(log_ratios, curves[0, :, record], curves[3, :, record])
         read = scipy.special.expit(curve.logit_at(log_own[record]))
-        factors[record] = _groups(own[record]) / _groups(read)
-    return _with_groups(curves[:3], factors)
+        found[..., record] = _with_groups(
+            curves[:3, :, record], _groups(own[record]) / _groups(read)
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            logs = np.log(without[..., record])
+            ratios = logs - [[np.interp(log_own[record], log_ratios, one)] for one in logs]
+            further = quantile(len(logs)) * jackknife_error(ratios)
+        factor = np.exp(np.hypot(0.5 * np.log(_groups(upper) / _groups(lower))[record], further))
+        for row, times in ((1, 1.0 / factor), (2, factor)):
+            limit = _with_groups(found[0, :, record], times)
+            found[row, :, record] = np.where(np.isfinite(factor), limit, found[row, :, record])
+    return found
 
 
 def _with_groups(shares, factors):
@@ -208,14 +230,12 @@ def _off_grid(study, experiment, first):
 
 
 def _sampled(study, films, threads, fewer=1, weaker=1.0):
-    """Numbers as from `_numbers`, sampled once for all records that have the same."""
-    if not films.sizes["record"]:
-        return np.empty((4, *films["film_thickness"].shape))
+    """Contact of the surfaces, sampled once for all records that have the same."""
     one_film = films.isel(curve_film=0, missing_dims="ignore")
     some, inverse = study_windows(study, one_film).distinct()
-    choices = {"fewer": fewer, "weaker": weaker}
+    choices = {"fewer": fewer, "weaker": weaker, "left_out": True}
     found = surface_contact(RoughPair.of(study), films.isel(record=some), threads, **choices)
-    return _numbers(study, found.transpose(..., "record"))[..., inverse]
+    return found.transpose(..., "record").isel(record=inverse)
 
 
 def _numbers(study, contact):

@@ -89,9 +89,8 @@ def test_surfaces_are_planned_by_the_scatter_of_one_pair(rollers, oil):
         *[(one.film_thickness, one.surface_breakthrough_probability) for one in ends], strict=True
     )
     thickness, shares = (np.log(second / first) for first, second in each)
-    # A third of the surfaces are drawn for the curve from which a film is read.
     limits = [known[f"surface_breakthrough_probability{end}"].values for end in LIMITS]
-    curve = 3.0**0.5 * error_of_limits(limits)
+    curve = error_of_limits(limits)
     errors = np.hypot(np.array([2.0, 1.0, 1.0]) * known.surface_pair_deviation.item(), curve)
     expected = quantile(SURFACES) * errors / (share * abs(shares / thickness)).item()
     np.testing.assert_allclose(film, expected, rtol=0.1)

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from experiments import experiment_of
 from made import made, on_few_surfaces
-from scipy.special import expit
+from scipy.special import expit, stdtrit
 
 from lube.contact.rough_pair import RoughPair
 from lube.contact.surface_strip import strip_films, surface_contact
@@ -24,6 +24,7 @@ from lube.inference.surface_records import (
 )
 from lube.schema import LIMITS, values_with_limits
 from lube.stages import film_table
+from lube.statistics.confidence import jackknife_error
 from lube.study.oil_properties import lubricant_table
 
 CURVE = "curve_probability"
@@ -53,9 +54,19 @@ def test_a_curve_is_corrected_by_numbers_that_are_known_within_a_factor_of_two()
     curves = np.stack([curve, curve, curve, np.full(8, 100.0)])[..., None].repeat(2, axis=2)
     # At the thinnest film half as many groups as by the curve: in one case known, in one not.
     own = -np.expm1(-np.array([[2.5, 2.5], [2.1, 1.0], [3.0, 6.0]]))
-    known, unknown = _anchored(curves, own, np.log(ratios), np.log(ratios[[0, 0]]))[0].T
+    # On some surfaces more contacts touch, all the more under thicker films.
+    steeper = 0.02 * np.arange(-2.0, 3.0)[:, None] * np.arange(8)
+    without = -np.log1p(-curve) * np.exp(steeper + np.array([-0.1, 0.2, 0.0, -0.2, 0.1])[:, None])
+    logs = np.log(ratios), np.log(ratios[[0, 0]])
+    found = _anchored(curves, without[..., None].repeat(2, axis=2), own, *logs)
+    known, unknown = found[0].T
     np.testing.assert_allclose(np.log1p(-known), 0.5 * np.log1p(-curve), rtol=0.02)
     np.testing.assert_array_equal(unknown, curve)
+    lower, upper = np.log(np.log1p(-found[1:, :, 0]) / np.log1p(-known))
+    np.testing.assert_allclose(lower, -upper, rtol=1e-9)
+    assert upper[0] == pytest.approx(0.5 * np.log(3.0 / 2.1))  # as of the record
+    further = stdtrit(4, 0.975) * jackknife_error(steeper)
+    np.testing.assert_allclose(upper, np.hypot(upper[0], further), rtol=1e-9)
 
 
 @pytest.fixture(scope="module")

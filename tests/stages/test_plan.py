@@ -173,7 +173,7 @@ def test_surfaces_are_planned_by_their_own_probability_and_scatter(both, both_fi
     np.testing.assert_allclose(share, areal["breakthrough_probability"], rtol=1e-5)
     relative = areal["pair_deviation"] / areal["breakthrough_probability"]
     limits = [areal[f"breakthrough_probability{end}"].values for end in LIMITS]
-    curve = error_of_limits(limits) / limits[0]  # as many surfaces are drawn for the curve here
+    curve = error_of_limits(limits) / limits[0]
     error = np.hypot(np.hypot(relative, surface["reading_error"]), curve)
     expected = quantile(plan.SURFACES) * error / np.abs(surface["slope_by_film"])
     width = surface["half_width"].sel(quantity="film thickness", turns=1.0)
