@@ -36,6 +36,10 @@ CURVE_FILMS = 8
 """Number of films of a curve at which contact is sampled."""
 CURVE_CONTACTS = 20.0, 1e-5
 """Contacts that theory expects in the strip under the thinnest and the thickest of these films."""
+BREAKTHROUGHS = 3.0
+"""Breakthroughs that it expects under the thinnest at least, or as many as under any film."""
+RATIOS = np.geomspace(0.5, 20.0, 12)
+"""Lambda ratios at which theory is asked for these."""
 ANCHORED = 0.9999
 """Probability at the film of a record below which the number of contacts is known well enough to
 correct the curve by it."""
@@ -84,6 +88,7 @@ def surfaces_at_records(
     own, parts = _at_films(study, first, inputs, threads)
     own_ratios, rare = first["lambda_ratio"].values, (own[0] > 0.0) & (own[0] < ANCHORED)
     thinnest, thickest = _curve_range(study, first, parts)
+    thinnest = min([thinnest, *(_broken_end(study, films) for _, films in parts)])
     # Where most layers hold, they may break rarely under films that many contacts bridge.
     thinnest = np.min(own_ratios[rare], initial=thinnest)
     ratios, pair = np.geomspace(thinnest, thickest, CURVE_FILMS), RoughPair.of(study)
@@ -103,7 +108,9 @@ def surfaces_at_records(
         found[:3] = _anchored(found, without, own[:, records], *logs)
         curves[..., records] = found
     few = of_layers[strengths == pair.layer.strength]
-    of_layers = _with_groups(of_layers, _groups(curves[0, LAYER_FILMS]) / _groups(few))
+    with np.errstate(divide="ignore", invalid="ignore"):  # no layer breaks
+        factors = _groups(curves[0, LAYER_FILMS]) / _groups(few)
+    of_layers = _with_groups(of_layers, factors)
     by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
     found = {
         "film_formula": films["film_formula"].values,
@@ -261,19 +268,42 @@ def _curve_range(study, first, parts):
 
 def _curve_ends(study, films):
     """Lambda ratios between which theory expects `CURVE_CONTACTS`, shape (distinct records, 2)."""
+    spec, length, ends = study.line_spec, study.rollers.length, []
+    for changed in _at_ratios(study, films):
+        each = [strip.contacts(spec, length).number for strip in changed]
+        ends.append(_ratios_with(each, CURVE_CONTACTS))
+    return np.reshape(ends, (-1, 2))
+
+
+def _broken_end(study, films):
+    """Least lambda ratio at which theory expects `BREAKTHROUGHS`, or the most there are."""
+    spec, length = study.line_spec, study.rollers.length
+    sharp, ends = mean_breaking_curvature(RoughPair.of(study), films), [np.inf]
+    for changed in _at_ratios(study, films):
+        each = [strip.expected(spec, length, sharp)[1] for strip in changed]
+        ends.append(_ratios_with(each, min(BREAKTHROUGHS, max(each))))
+    return min(ends)
+
+
+def _at_ratios(study, films):
+    """Yield the strips of distinct records under films of `RATIOS`."""
     some, _ = study_windows(study, films).distinct()
-    films, ratios, ends = films.isel(record=some), np.geomspace(0.5, 20.0, 12), []
+    films = films.isel(record=some)
     strips = strip_films(RoughPair.of(study), films)
     for strip, own in zip(strips, films["lambda_ratio"].values, strict=True):
         if strip is not None:
-            changed = [strip.thicker(ratio / own) for ratio in ratios]
-            each = [one.contacts(study.line_spec, study.rollers.length).number for one in changed]
-            # Below the film with the most contacts these merge. The logarithm of rare ones is
-            # nearly linear in the square of the ratio.
-            most = np.maximum.accumulate(each[::-1])[::-1]
-            squares = np.interp(-np.log(CURVE_CONTACTS), -np.log(most), ratios**2)
-            ends.append(np.sqrt(squares))
-    return np.reshape(ends, (-1, 2))
+            yield [strip.thicker(ratio / own) for ratio in RATIOS]
+
+
+def _ratios_with(each, numbers):
+    """Largest lambda ratios with some numbers of contacts, from those at `RATIOS`."""
+    # Below the film with the most contacts these merge. The logarithm of rare ones is nearly linear
+    # in the square of the ratio.
+    first = int(np.argmax(each))
+    with np.errstate(divide="ignore"):
+        logs = np.log(np.maximum.accumulate(each[::-1])[::-1][first:])
+        squares = np.interp(-np.log(numbers), -logs, RATIOS[first:] ** 2)
+    return np.sqrt(squares)
 
 
 def _layer_strengths(pair, films, level):

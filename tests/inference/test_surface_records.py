@@ -10,8 +10,9 @@ from made import made, on_few_surfaces
 from scipy.special import expit, stdtrit
 
 from lube.contact.rough_pair import RoughPair
-from lube.contact.surface_strip import strip_films, surface_contact
+from lube.contact.surface_strip import mean_breaking_curvature, strip_films, surface_contact
 from lube.grid.film_responses import with_surface_responses
+from lube.inference import surface_records
 from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_records import (
     CURVE_CONTACTS,
@@ -128,7 +129,8 @@ def test_curves_are_those_of_other_films_at_the_same_width(plain, found):
     np.testing.assert_array_equal(surfaces[CURVE][:, 1], surfaces[CURVE][:, 3])
 
 
-def test_curves_of_other_layers_are_those_of_studies_with_them(plain, found):
+def test_curves_of_other_layers_are_those_of_studies_with_them(plain, found, monkeypatch):
+    monkeypatch.setattr(surface_records, "BREAKTHROUGHS", 0.0)  # the same films as without it
     study, inputs = plain
     _, surfaces = found
     strengths = surfaces["layer_strength"].values
@@ -148,6 +150,28 @@ def test_curves_of_other_layers_are_those_of_studies_with_them(plain, found):
     by_layer = surfaces["layer_curve_probability"].values
     np.testing.assert_allclose(by_layer[0], surfaces[CURVE][LAYER_FILMS], rtol=1e-12)
     assert (np.diff(by_layer, axis=0) <= 0.0).all() and (by_layer[-1] < 0.6 * by_layer[0]).all()
+
+
+def test_where_most_layers_hold_a_curve_goes_on_to_films_under_which_some_break(plain, found):
+    study, inputs = plain
+    layer, ratio = study.boundary_layer, found[1]["layer_strength"].values[-2]
+    ratio = ratio / layer.strength
+    layer = layer.model_copy(update={"shear_strength": ratio * layer.shear_strength})
+    strong = study.model_copy(update={"boundary_layer": layer})
+    inputs = inputs | {"areal": made(strong, ("lubricant", "film", "areal"))["areal"]}
+    first, surfaces = at_records(strong, inputs, FORCES)
+    thinnest = [each["curve_lambda_ratio"].values[0] for each in (surfaces, found[1])]
+    assert thinnest[0] < 0.9 * thinnest[1]
+    pair = RoughPair.of(strong)
+    each = zip(strip_films(pair, first), first["lambda_ratio"].values, strict=True)
+    sharp = mean_breaking_curvature(pair, first)
+    for strip, own in each:
+        numbers = [
+            strip.thicker(times * thinnest[0] / own).expected(pair.spec, pair.length, sharp)[1]
+            for times in (0.6, 0.8, 1.0, 1.1)
+        ]
+        assert numbers[2] > min(0.9 * max(numbers), 3.0)
+    assert (surfaces[CURVE][0] > 0.5).any()
 
 
 def test_at_the_film_of_a_record_its_curve_has_the_probability_of_the_record(found):
