@@ -17,7 +17,7 @@ from lube.schema import LIMITS, POINT_DIMS
 from lube.study.field_types import validate
 from lube.study.operating_grid import OperatingGrid
 from lube.study.study import Study
-from lube.study.uncertainty import Uncertainty, check_uncertainty
+from lube.study.uncertainty import BAND, Uncertainty, check_uncertainty
 from lube.types import Array, Values
 
 SAMPLES = {"line": 128, "surface": 32}
@@ -72,7 +72,7 @@ class Assumptions:
             raise StudyError(f"bands: got {shown(bands)}, need True, False or a dict of ranges")
         self.wanted = bands is not False
         self.rollers, self.choices, self.seed = rollers, choices, seed
-        ranges = RANGES if bands is True else dict(bands or {})
+        ranges = _usual_ranges(rollers) if bands is True else dict(bands or {})
         uncertain = validate(Uncertainty, ranges, "bands", StudyError)
         if uncertain.resistivity:
             came = "resistivity: got a range, on which no probability depends"
@@ -191,6 +191,12 @@ class Assumptions:
 
         limits = zip(LIMITS[1:], np.quantile(samples, BAND, axis=0), strict=True)
         return {f"{name}{end}": samples[0].copy(data=limit) for end, limit in limits}
+
+
+def _usual_ranges(rollers):
+    """Those of `RANGES` that the rollers' lines have: measured spectra have no other band."""
+    known = [] if all(line.hurst_exponent for line in rollers.lines.lines) else BAND
+    return {name: one for name, one in RANGES.items() if name not in known}
 
 
 def _without(uncertain, left_out):

@@ -43,6 +43,8 @@ RATIOS = np.geomspace(0.5, 20.0, 12)
 ANCHORED = 0.9999
 """Probability at the film of a record below which the number of contacts is known well enough to
 correct the curve by it."""
+ANCHORINGS = 3
+"""How often a curve is corrected, as it is interpolated between its films."""
 LAYER_FILMS = [1, 3, 5]
 """Numbers of those of these films at which contact with other boundary layers is sampled."""
 LAYER_SHARES = 0.9, 0.5, 0.2, 0.05
@@ -159,28 +161,42 @@ def _anchored(curves, without, own, log_ratios, log_own):
     """Curves with as many groups of contacts at the film of each record as were sampled there.
 
     A curve is sampled on the first of the same surfaces, so what it shows too much or too little
-    there it shows at other films, too. This corrects the error of interpolation as well. At the
-    film of the record the curve is as exact as the number sampled there, and at others the error of
-    their ratio is added. Numbers of groups that are not known within a factor of two, as where
-    contact is nearly certain, correct nothing.
+    there it shows at other films, too, as far as both scatter together between the surfaces. This
+    corrects the error of interpolation as well. At the film of the record the curve is then as
+    exact as the number sampled there. Numbers of groups that are not known within a factor of two,
+    as where contact is nearly certain, correct nothing.
     """
-    found, (own, lower, upper) = curves[:3].copy(), own[:3]
-    known = (own > 0.0) & (own < ANCHORED) & (_groups(upper) < 2.0 * _groups(lower))
+    found, (own, lower, upper) = curves[:3].copy(), _groups(own[:3])
+    known = (own > 0.0) & (own < _groups(ANCHORED)) & (upper < 2.0 * lower)
     for record in np.flatnonzero(known):
-        curve = contact_curve(log_ratios, curves[0, :, record], curves[3, :, record])
-        read = scipy.special.expit(curve.logit_at(log_own[record]))
-        found[..., record] = _with_groups(
-            curves[:3, :, record], _groups(own[record]) / _groups(read)
-        )
-        with np.errstate(divide="ignore", invalid="ignore"):
-            logs = np.log(without[..., record])
-            ratios = logs - [[np.interp(log_own[record], log_ratios, one)] for one in logs]
-            further = quantile(len(logs)) * jackknife_error(ratios)
-        factor = np.exp(np.hypot(0.5 * np.log(_groups(upper) / _groups(lower))[record], further))
-        for row, times in ((1, 1.0 / factor), (2, factor)):
-            limit = _with_groups(found[0, :, record], times)
-            found[row, :, record] = np.where(np.isfinite(factor), limit, found[row, :, record])
+        slope, rest = _together(without[..., record], log_ratios, log_own[record])
+        mean, *_, sizes, factor = *curves[..., record], 1.0
+        for _ in range(ANCHORINGS):
+            curve = contact_curve(log_ratios, _with_groups(mean, factor), sizes)
+            read = scipy.special.expit(curve.logit_at(log_own[record]))
+            factor = factor * (own[record] / _groups(read)) ** slope
+        found[..., record] = _with_groups(found[..., record], factor)
+        of_own = 0.5 * slope * np.log(upper[record] / lower[record])
+        times = np.exp(np.hypot(of_own, quantile(len(without)) * rest))
+        for row, one in ((1, 1.0 / times), (2, times)):
+            limit = _with_groups(found[0, :, record], one)
+            found[row, :, record] = np.where(np.isfinite(times), limit, found[row, :, record])
     return found
+
+
+def _together(without, log_ratios, log_own):
+    """How numbers of groups at films follow that at another, and the error of what does not.
+
+    They are logarithms, and `without` is the number without each of the surfaces. Where none
+    touches the first is 1, and the second is not known.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logs = np.log(without)
+        there = np.array([[np.interp(log_own, log_ratios, one)] for one in logs])
+        away = there - there.mean()
+        slope = np.sum(away * logs, axis=0) / np.sum(away**2)
+        slope = np.where(np.isfinite(slope), slope, 1.0)
+        return slope, jackknife_error(logs - slope * there)
 
 
 def _with_groups(shares, factors):

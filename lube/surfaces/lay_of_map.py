@@ -23,6 +23,13 @@ LEAST_ROWS = 8
 LEAST_PART = 0.05
 """Waves of which the filters leave a smaller part of the power take no part in the fit of a lay."""
 
+NOTHING = 1e-4
+"""Part of the power that the shortest waves may have without taking part in the fit of a lay: a
+surface that has none as short shows only noise there."""
+
+RINGS = 200
+"""Rings of wavenumbers among which these are sought."""
+
 LEAST_GAIN = 30.0
 """Gain in the logarithm of the likelihood for which a map with a lay counts as blurred."""
 
@@ -66,7 +73,7 @@ def lay_of_map(
     first = math.degrees(direction) + 90.0
     every = _Waves.of_map(power, lengths, q_max, cutoffs)
     lay, _ = every.inside(1.0, first).likeliest(first)
-    shortest = _along_ridges(lengths, lay[1]) * q_max / (2.0 * np.pi)
+    shortest = _along_ridges(lengths, lay[1]) * every.q_max / (2.0 * np.pi)
     if _ratio(lay) > LONG_RIDGES * shortest:
         last = lay
         for _ in range(REPEATS):
@@ -86,6 +93,14 @@ def _along_ridges(lengths, angle):
 def _ratio(lay):
     """Ratio of a lay, which is fitted as its logarithm and its angle."""
     return math.exp(abs(lay[0]))
+
+
+def _last_square(square, powers):
+    """Square of the wavenumber beyond which the waves have next to no power, 1 at most."""
+    number = (RINGS * np.sqrt(square)).astype(np.int64)
+    beyond = np.cumsum(np.bincount(number, powers)[::-1])
+    last = RINGS - np.searchsorted(beyond, NOTHING * beyond[-1]) + 1
+    return min(last / RINGS, 1.0) ** 2
 
 
 @dataclass(frozen=True)
@@ -121,7 +136,10 @@ class _Waves:
         transfer = power_transfer(q_max * np.sqrt(square), *cutoffs)
         used = (square <= 1.0) & (power > 0.0) & (transfer > LEAST_PART)
         of_waves = along[used], across[used], square[used], power[used] / transfer[used]
-        return cls(lengths, q_max, *of_waves)
+        last = _last_square(*of_waves[2:])
+        some = of_waves[2] <= last
+        along, across, square, powers = (one[some] for one in of_waves)
+        return cls(lengths, q_max * math.sqrt(last), along, across, square / last, powers)
 
     def inside(self, ratio, angle):
         """Choose waves that are those of the isotropic surface up to `q_max`, by some lay."""

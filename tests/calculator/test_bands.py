@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from studies import CONFIG
 
 import lube
 from lube import LubeError
 from lube.calculator.bands import RANGES, Assumptions
 from lube.calculator.choices import Choices
+from lube.study.uncertainty import BAND
 
 POINTS = {"force": "400 N", "speed": "100 rpm", "temperature": ["60 degC", "80 degC"]}
 KELVIN = {"temperature": {"range": "+- 2 K", "source": "thermocouple"}}
@@ -32,6 +34,18 @@ def test_ranges_on_which_an_answer_does_not_depend_are_left_out(rollers, oil):
         LubeError, match=r"^bands: got temperature, need an uncertain quantity or choice on"
     ):
         Assumptions(KELVIN, rollers, oil, Choices("paper"), 1, ["temperature"])
+
+
+def test_measured_rollers_have_usual_ranges_but_of_their_band(oil):
+    surface = {"file": str(CONFIG / "surfaces/example.x3p"), "texture": "isotropic"}
+    surface = {"topography": surface | {"holes": "interpolate"}}
+    band = {"longest_wavelength": "0.2 mm", "shortest_wavelength": "6.25 um"}
+    measured = lube.Rollers("50 mm", "0.1 um", second=surface, **band)
+    levels = {"force": [400.0], "speed": [100.0], "temperature": [60.0]}
+    some = Assumptions(True, measured, oil, Choices("paper"), 1)
+    some.check({name: np.array(values) for name, values in levels.items()})
+    left = {factor.name for factor in some.study(levels).uncertainty.factors()}
+    assert RANGES.keys() - left == set(BAND)
 
 
 def test_the_bands_enclose_the_answer_and_what_is_less_certain_has_a_wider_one(rollers, oil):
