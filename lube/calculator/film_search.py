@@ -1,8 +1,6 @@
 """Search for the film that keeps contact below a share of time."""
 
-import logging
 from collections.abc import Mapping
-from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +16,7 @@ from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import strip_films, surface_contact
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError, shown
+from lube.grid.films import unreported
 from lube.grid.gap import PLAIN
 from lube.physics.excursions import expected_contacts
 from lube.schema import LIMITS, values_with_limits
@@ -65,18 +64,6 @@ def check_known(is_known: bool) -> None:
     """
     if not is_known:
         raise RangeError("the film did not converge at the conditions tried, need others")
-
-
-@contextmanager
-def _unreported():
-    """Log no films that did not converge: most levels tried are far from the one that is sought."""
-    log = logging.getLogger("lube")
-    level = log.level
-    log.setLevel(logging.ERROR)
-    try:
-        yield
-    finally:
-        log.setLevel(level)
 
 
 class FilmSearch:
@@ -136,7 +123,7 @@ class FilmSearch:
             Film table at the film found, or the one next to it that was tried.
         """
         plain = replace(self._choices, gap=PLAIN)
-        with _unreported():
+        with unreported():
             whole = table(levels, plain)
         for name, size in whole["film_thickness"].sizes.items():
             if size != levels.size:

@@ -1,7 +1,8 @@
 """The film over any operating conditions: the contact, its groups, film thickness and profile."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -21,6 +22,19 @@ from lube.physics.regimes import asymptotic_gap, regime
 from lube.physics.starvation import starvation_factor
 
 log = logging.getLogger(__name__)
+
+
+@contextmanager
+def unreported() -> Iterator[None]:
+    """Log no films that did not converge, where most conditions tried are far from those sought."""
+    whole = logging.getLogger("lube")
+    level = whole.level
+    whole.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        whole.setLevel(level)
+
 
 _THINNED = ["film_thickness", "lambda_ratio"]
 """Variables that heating at the inlet reduces."""

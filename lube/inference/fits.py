@@ -13,7 +13,7 @@ import xarray as xr
 from lube.contact.ensemble import windows_at_records
 from lube.contact.surface_strip import SURFACES
 from lube.ehl.film_formulas import formula
-from lube.grid.films import FilmGroups
+from lube.grid.films import FilmGroups, unreported
 from lube.grid.load_sharing import MOST
 from lube.inference.record_curves import PROBABILITY, RecordCurves, realised_shares
 from lube.inference.surface_scatter import pair_correlation
@@ -177,7 +177,8 @@ def _films(row, groups, factor):
         # A few factors at a time: the integral of starvation takes a hundred times their memory.
         parts = np.array_split(range(factor.size), 1 + factor.size // 20)
         return xr.concat([film(factor[some]) for some in parts], "factor", join="exact")
-    films = film(xr.DataArray(COMPUTED_FACTORS, dims="factor"))
+    with unreported():
+        films = film(xr.DataArray(COMPUTED_FACTORS, dims="factor"))
     core = {"input_core_dims": [["node"], ["factor"]], "output_core_dims": [["factor"]]}
     nodes = films.rename(factor="node")
     return xr.apply_ufunc(_between_nodes, nodes, factor, **core, vectorize=True)

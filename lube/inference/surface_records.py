@@ -177,7 +177,7 @@ def _anchored(curves, without, own, log_ratios, log_own):
             factor = factor * (own[record] / _groups(read)) ** slope
         found[..., record] = _with_groups(found[..., record], factor)
         of_own = 0.5 * slope * np.log(upper[record] / lower[record])
-        times = np.exp(np.hypot(of_own, quantile(len(without)) * rest))
+        times = np.exp(np.hypot(of_own, quantile(len(without) - 1) * rest))
         for row, one in ((1, 1.0 / times), (2, times)):
             limit = _with_groups(found[0, :, record], one)
             found[row, :, record] = np.where(np.isfinite(times), limit, found[row, :, record])
@@ -196,7 +196,9 @@ def _together(without, log_ratios, log_own):
         away = there - there.mean()
         slope = np.sum(away * logs, axis=0) / np.sum(away**2)
         slope = np.where(np.isfinite(slope), slope, 1.0)
-        return slope, jackknife_error(logs - slope * there)
+        # The slope takes a degree of freedom.
+        wider = np.sqrt((len(logs) - 1) / (len(logs) - 2))
+        return slope, wider * jackknife_error(logs - slope * there)
 
 
 def _with_groups(shares, factors):

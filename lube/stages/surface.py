@@ -106,9 +106,9 @@ def _remarks(surface, line):
     resolved, shortest = surface["resolved_wavelength"].item(), line.shortest_wavelength
     if resolved > shortest:
         yield (
-            f"waves shorter than {resolved:.2g} m show the instrument and not the surface, and the "
-            f"line has waves down to {shortest:.2g} m: set a shortest_wavelength above "
-            f"{resolved:.2g} m"
+            f"waves shorter than {with_unit(resolved, 'm', 2)} show the instrument and not the "
+            f"surface, and the line has waves down to {with_unit(shortest, 'm', 2)}: set a "
+            f"shortest_wavelength above {with_unit(resolved, 'm', 2)}"
         )
     hurst = surface["hurst_exponent"].item()
     if hurst <= 0.0 or hurst >= 1.0:

@@ -111,8 +111,8 @@ class RollerTopography(StrictModel):
             return {"rms_height": rms, "spectrum": spectrum, **lay}
         length = self._measured.lengths[0]
         if length < width:
-            needed = f"need one longer than the contact is wide, {width:.3g} m"
-            raise DataError(f"{self.file}: got a profile of {length:.3g} m, {needed}")
+            needed = f"need one longer than the contact is wide, {1e3 * width:.3g} mm"
+            raise DataError(f"{self.file}: got a profile of {1e3 * length:.3g} mm, {needed}")
         rms, heights = topography_lines.measured_line(
             self.use, self._measured, points, spacing, band[1], height_step
         )

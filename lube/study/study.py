@@ -476,9 +476,11 @@ class Study(StrictModel):
             wanted, given = getattr(point, variable), available[variable]
             index = 0 if wanted is None else level_index(given, wanted, SAME)
             if index is None:
+                unit = {"force": " N", "speed": " rpm", "temperature": " degC"}.get(variable, "")
                 raise ValueError(
-                    f"traces.{number}.{variable}: got {wanted}, need one of the study's: "
-                    f"{', '.join(map(str, given))}; a study that gives no traces has its base's"
+                    f"traces.{number}.{variable}: got {wanted}{unit}, need one of the study's: "
+                    f"{', '.join(map(str, given))}{unit}; a study that gives no traces has its "
+                    "base's"
                 )
             found[variable] = given[index]
         return found

@@ -70,13 +70,13 @@ def closed_line(
     length, needed = profile.lengths[0], points * point_spacing
     if abs(length - needed) > CLOSED_TO * needed:
         raise DataError(
-            f"{profile.name}: got a profile of {length:.4g} m, need the circumference, "
-            f"{needed:.4g} m, to {CLOSED_TO:.0%}"
+            f"{profile.name}: got a profile of {1e3 * length:.4g} mm, need the "
+            f"circumference, {1e3 * needed:.4g} mm, to {CLOSED_TO:.0%}"
         )
     if step := step_at_join(profile.heights):
         raise DataError(
-            f"{profile.name}: got a step of {abs(step):.3g} m from the last point to the first, "
-            "need one turn whose ends meet, prepared as a closed profile"
+            f"{profile.name}: got a step of {1e6 * abs(step):.3g} µm from the last point to the "
+            "first, need one turn whose ends meet, prepared as a closed profile"
         )
     return _resampled(profile.heights, points, point_spacing, shortest, height_step)
 
@@ -132,8 +132,8 @@ def _check(profile, shortest):
     finest = max(2.0 * profile.spacing[0], profile.resolution)
     if finest > shortest * (1.0 + 1e-9):
         raise DataError(
-            f"{profile.name}: got waves down to {finest:.3g} m, need waves down to {shortest:.3g} "
-            "m, the shortest wavelength of the study"
+            f"{profile.name}: got waves down to {1e6 * finest:.3g} µm, need waves down to "
+            f"{1e6 * shortest:.3g} µm, the shortest wavelength of the study"
         )
 
 

@@ -77,14 +77,14 @@ def band_table(spectrum: LineSpectrum, q_min: float, q_max: float) -> Pair:
     begin, end = spectrum.limits or spectrum.wave_vector[[0, -1]]
     if q_min < begin * (1.0 - 1e-9):
         raise DataError(
-            f"{spectrum.name}: got waves up to {2.0 * np.pi / begin:.3g} m, half the measured "
-            f"length, need waves up to {2.0 * np.pi / q_min:.3g} m, the longest wavelength of the "
+            f"{spectrum.name}: got waves up to {2e3 * np.pi / begin:.3g} mm, half the measured "
+            f"length, need waves up to {2e3 * np.pi / q_min:.3g} mm, the longest wavelength of the "
             "study"
         )
     if q_max > end * (1.0 + 1e-9):
         raise DataError(
-            f"{spectrum.name}: got waves down to {2.0 * np.pi / end:.3g} m, need waves down to "
-            f"{2.0 * np.pi / q_max:.3g} m, the shortest wavelength of the study"
+            f"{spectrum.name}: got waves down to {2e6 * np.pi / end:.3g} µm, need waves down to "
+            f"{2e6 * np.pi / q_max:.3g} µm, the shortest wavelength of the study"
         )
     if not np.all(spectrum.density > 0.0):
         raise DataError(f"{spectrum.name}: got a density of zero or less, need a positive spectrum")

@@ -67,7 +67,7 @@ def test_a_curve_is_corrected_by_numbers_that_are_known_within_a_factor_of_two()
     lower, upper = np.log(np.log1p(-found[1:, :, 0]) / np.log1p(-known))
     np.testing.assert_allclose(lower, -upper, rtol=1e-9)
     assert upper[0] == pytest.approx(0.5 * np.log(3.0 / 2.1))  # as of the record
-    further = stdtrit(4, 0.975) * jackknife_error(rest)
+    further = stdtrit(3, 0.975) * np.sqrt(4.0 / 3.0) * jackknife_error(rest)
     np.testing.assert_allclose(upper, np.hypot(slope * upper[0], further), rtol=1e-9)
 
 

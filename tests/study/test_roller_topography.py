@@ -235,9 +235,9 @@ REFUSED = {
     "unknown key": (MAP | {"hole": "refuse"}, BAND, "did you mean 'holes'?"),
     "no texture": ({"file": "scan.csv"}, BAND, "topography.texture: missing"),
     "holes": (MAP | {"holes": "refuse"}, BAND, "example.x3p: got holes, 0.07% of the points, need"),
-    "too coarse": (MAP, SHORT, "down to 6.25e-06 m, need waves down to 4e-06 m, the shortest"),
+    "too coarse": (MAP, SHORT, "down to 6.25 µm, need waves down to 4 µm, the shortest"),
     "too short": (MAP, {"shortest_wavelength": "7 um", "longest_wavelength": "0.3 mm"}, "half the"),
-    "not closed": (SCAN | {"use": "closed line"}, BAND, "got a profile of 0.0039 m, need the circ"),
+    "not closed": (SCAN | {"use": "closed line"}, BAND, "got a profile of 3.9 mm, need the circ"),
     "a map as line": (
         MAP | {"texture": "along rolling", "use": "repeated line"},
         BAND,
@@ -289,9 +289,7 @@ def test_a_profile_shorter_than_the_contact_is_refused(study_file, tmp_path):
     path = study_file(
         short, realisations=1, kept_realisations=[0], operating_grid=forces, traces=trace
     )
-    assert "short.csv: got a profile of 0.00015 m, need one longer than the contact" in refusal(
-        path
-    )
+    assert "short.csv: got a profile of 0.15 mm, need one longer than the contact" in refusal(path)
 
 
 def test_a_topography_beside_another_roughness_is_refused(study_file):

@@ -101,8 +101,8 @@ NAMES = [
 
 TRACE = {"force": "800 N", "speed": "150 rpm", "temperature": "40 degC"}
 TRACES = [
-    ("traces.0.force", "300 N", "got 300.0, need one of the study's: 100.0, 200.0"),
-    ("traces.0.speed", "101 rpm", "got 101.0, need one of the study's: 85.7"),
+    ("traces.0.force", "300 N", "got 300.0 N, need one of the study's: 100.0, 200.0"),
+    ("traces.0.speed", "101 rpm", "got 101.0 rpm, need one of the study's: 85.7"),
     ("traces.0.lubricant", "nope", f"got nope, need one of the study's: {OIL}"),
     ("traces.0.film_formula", "nope", "got nope, need one of the study's: paper"),
     ("traces", [], "got [], need 1 or more entries"),

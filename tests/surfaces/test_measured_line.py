@@ -49,7 +49,9 @@ def test_drift_is_removed_and_a_length_a_little_wrong_is_made_right():
         for each in (heights, drifted)
     )
     np.testing.assert_allclose(found, plain, atol=0.05 * np.std(heights))
-    with pytest.raises(DataError, match=r"t: got a step of 2.* m from the last point to the first"):
+    with pytest.raises(
+        DataError, match=r"t: got a step of 2.* µm from the last point to the first"
+    ):
         closed_line(Topography("t", drifted, (1e-6,)), 4000, 1e-6, 1e-5, STEP)
 
 
@@ -83,8 +85,8 @@ def test_a_short_profile_is_repeated_a_whole_number_of_times():
     ("function", "heights", "spacing", "message"),
     [
         (closed_line, np.zeros((80, 80)), (1e-6, 1e-6), "got a map, need a profile"),
-        (closed_line, np.zeros(3900), (1e-6,), r"got a profile of 0\.0039 m, need the circumf"),
-        (closed_line, np.zeros(400), (1e-5,), "down to 2e-05 m, need waves down to 1e-05 m"),
+        (closed_line, np.zeros(3900), (1e-6,), r"got a profile of 3\.9 mm, need the circumf"),
+        (closed_line, np.zeros(400), (1e-5,), "down to 20 µm, need waves down to 10 µm"),
     ],
 )
 def test_profiles_that_do_not_suit_are_refused(function, heights, spacing, message):

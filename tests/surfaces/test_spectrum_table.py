@@ -27,9 +27,9 @@ def test_missing_power_goes_to_the_least_certain_densities():
 def test_bands_beyond_the_measurement_are_refused():
     q = np.geomspace(1e4, 1e6, 30)
     known = LineSpectrum("a.csv", q, q**-2.4, np.ones(30), np.ones(30), True)
-    with pytest.raises(DataError, match=r"a.csv: got waves up to 0.000628 m.* to 0.00126 m"):
+    with pytest.raises(DataError, match=r"a.csv: got waves up to 0.628 mm.* to 1.26 mm"):
         band_table(known, 5e3, 1e6)
-    with pytest.raises(DataError, match=r"a.csv: got waves down to 6.28e-06 m.* to 3.14e-06 m"):
+    with pytest.raises(DataError, match=r"a.csv: got waves down to 6.28 µm.* to 3.14 µm"):
         band_table(known, 1e4, 2e6)
     negative = replace(known, density=-known.density)
     with pytest.raises(DataError, match="got a density of zero or less"):
