@@ -228,7 +228,7 @@ def _check_band(own, wavelengths, points, spacing, key):
         needed = f"need less than the longest, {_length(longest)}"
         if isinstance(own.shortest_wavelength, str):  # in points
             least = math.ceil(points * shortest / longest) + 1
-            needed += f"; for it, need {least} roughness.points or more"
+            needed += f"; if it is in points, need {least} roughness.points or more"
         raise StudyError(f"{key('shortest_wavelength')}: got {_length(shortest)}, {needed}")
     if not shortest * (1.0 - 1e-9) <= roll_off <= longest * (1.0 + 1e-9):
         raise StudyError(
