@@ -37,7 +37,7 @@ FEWER_SURFACES = 16, 2
 not tell how often the layer breaks."""
 APART = 2.0
 """Ratio of the probabilities of two sets above which more surfaces are sampled."""
-FEW_BREAK = 0.1
+FEW_BREAK = 0.3
 """Part of the contacts that break their layer below which more surfaces are sampled."""
 SIZES = {"line": (1024, 2), "answered line": (256, 2), "surface": (32, 12), "sum": (4, 24)}
 """Numbers of samples of a model, and of operating points of each.
