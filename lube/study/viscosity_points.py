@@ -23,7 +23,7 @@ class ViscosityPoint(StrictModel):
 
     temperature: OilTemperature
     """temperature of the value"""
-    kinematic_viscosity: Annotated[float, quantity("m^2/s", above=0.0)] | None = None
+    kinematic_viscosity: Annotated[float, quantity("m^2/s", above=0.0, most=1.0)] | None = None
     """kinematic viscosity; this or `dynamic_viscosity`, or both if they agree"""
     dynamic_viscosity: Annotated[float, quantity("Pa*s", above=0.0)] | None = None
     """dynamic viscosity"""
