@@ -12,11 +12,7 @@ import xarray as xr
 from lube.contact.rough_pair import RoughPair
 from lube.contact.strip_film import curvature_moments, surface_moments
 from lube.contact.strip_sampling import WITHOUT
-from lube.contact.surface_strip import (
-    mean_breaking_curvature,
-    strip_films,
-    surface_contact,
-)
+from lube.contact.surface_strip import mean_breaking_curvature, strip_films, surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_responses
 from lube.inference.at_records import film_at_records
