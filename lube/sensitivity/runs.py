@@ -39,6 +39,8 @@ APART = 2.0
 """Ratio of the probabilities of two sets above which more surfaces are sampled."""
 FEW_BREAK = 0.3
 """Part of the contacts that break their layer below which more surfaces are sampled."""
+RAREST = 1e-3
+"""Part below which a run of surfaces tells a surrogate nothing."""
 SIZES = {"line": (1024, 2), "answered line": (256, 2), "surface": (32, 12), "sum": (4, 24)}
 """Numbers of samples of a model, and of operating points of each.
 
@@ -189,8 +191,16 @@ def run(
     -------
     xarray.Dataset
         Variables of the films over run, and ``breakthrough_probability`` over run and seed; NaN
-        where the film is not known, or the layer holds in all contacts that were sampled.
+        where the film is not known, or the layer holds in all contacts that were sampled; of
+        surfaces also if it breaks in fewer than `RAREST`, or their sets still differ.
     """
+    films, found, is_clear = _runs(deviating, model, unit, points, threads, responses)
+    known = np.where((found > 0.0) & is_clear, found, np.nan)
+    return films.assign(breakthrough_probability=(("run", "seed"), known))
+
+
+def _runs(deviating, model, unit, points, threads=None, responses=None):
+    """Films of `run`, its probabilities, shape (runs, seeds), and whether they are clear."""
     values = deviations(deviating.factors, unit)
     films = deviating.films(over_run(values), points, with_shape=model.gap.has_shape)
     if model.gap.is_answered:
@@ -203,18 +213,17 @@ def run(
     parts = ((runs, film, same) for runs, film in films for same in _same_samples(unit[runs]))
     of_samples = [(runs[same], film.isel(run=same)) for runs, film, same in parts]
 
-    found = np.empty((len(unit), SEEDS))
+    found, is_clear = np.empty((2, len(unit), SEEDS))
 
     def of_sample(sample):
         runs, film = sample
         own = {name: column[runs[0]].item() for name, column in values.items()}
-        found[runs] = _probabilities(deviating, model, own, film)
+        found[runs], is_clear[runs] = _probabilities(deviating, model, own, film)
 
     # Options of xarray are those of all threads: set here, none changes them for the others.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         on_threads(of_sample, of_samples, threads, "direct runs")
-    known = np.where(found > 0.0, found, np.nan)
-    return joined(films).assign(breakthrough_probability=(("run", "seed"), known))
+    return joined(films), found, is_clear > 0.0
 
 
 def run_all(deviating: Deviating, unit: Array, points: xr.Dataset) -> Array:
@@ -242,10 +251,9 @@ def run_all(deviating: Deviating, unit: Array, points: xr.Dataset) -> Array:
     for model in models(deviating):
         some = np.flatnonzero(is_chosen(deviating, model._asdict(), values, len(samples)))
         if some.size:
-            table = run(deviating, model, samples[some], runs.isel(run=some))
-            # Without a value where the layer holds in all contacts that were sampled.
-            probability = table["breakthrough_probability"].fillna(0.0).mean("seed").clip(max=1.0)
-            found[some] = probability.where(table["film_thickness"].notnull()).values
+            table, sampled, _ = _runs(deviating, model, samples[some], runs.isel(run=some))
+            is_known = table["film_thickness"].notnull().values
+            found[some] = np.where(is_known, np.minimum(sampled.mean(axis=1), 1.0), np.nan)
     return found.reshape(len(unit), number)
 
 
@@ -256,7 +264,10 @@ def _same_samples(unit):
 
 
 def _probabilities(deviating, model, values, film):
-    """Probability of breakthrough at some points, by each set of random numbers."""
+    """Probability of breakthrough at some points, by each set of random numbers.
+
+    Then whether it is clear enough for a surrogate.
+    """
     study, spec, layer = deviating.study, deviating.lines(values), deviating.layer(values)
     film["reduced_modulus"] = film["reduced_modulus"].values.flat[0]
     ratio = film["film_thickness"] / deviating.rms_roughness(values)
@@ -266,7 +277,8 @@ def _probabilities(deviating, model, values, film):
     weaker = film.get("roughness_factor", 1.0)
     if model.contact_model == "surface":
         pair = RoughPair(spec, study.rollers.length, layer, study.seed, model.gap)
-        return _of_surfaces(pair, film, weaker)[:, np.arange(SEEDS) % SURFACE_SEEDS]
+        found, is_clear = _of_surfaces(pair, film, weaker)
+        return found[:, np.arange(SEEDS) % SURFACE_SEEDS], is_clear
     windows = ContactWindows(spec, film, layer, model.gap, weaker)
 
     def sampled(some, numbers):
@@ -282,11 +294,14 @@ def _probabilities(deviating, model, values, film):
     if noisy.size:
         more = sampled(windows[noisy], range(SEEDS * PAIRS, SEEDS * PAIRS * TIMES))
         mean[noisy] = np.concatenate([found[noisy], more], axis=2).mean(axis=2)
-    return mean
+    return mean, True
 
 
 def _of_surfaces(pair, film, weaker):
-    """Probability of breakthrough of surfaces at some points, by each set that has its own."""
+    """Probability of breakthrough of surfaces at some points, by each set that has its own.
+
+    Then whether it is clear, shape (points, 1).
+    """
     pairs = [replace(pair, seed=pair.seed + number) for number in range(SURFACE_SEEDS)]
 
     def sampled(wanted, fewer):
@@ -297,11 +312,17 @@ def _of_surfaces(pair, film, weaker):
 
     few, more = FEWER_SURFACES
     contact = sampled(None, few)
-    found = contact["breakthrough_probability"].values
-    least, most = found.min(axis=1), found.max(axis=1)
-    rare = (contact["breakthroughs"] < FEW_BREAK * contact["contacts"]).any("set").values
-    noisy = (most > APART * least) | (least == 0.0) | rare
+    noisy = ~_is_clear(contact, FEW_BREAK) & film["film_thickness"].notnull().values
     if noisy.any():
         wanted = film["film_thickness"].copy(data=noisy)
-        found[noisy] = sampled(wanted, more)["breakthrough_probability"].values[noisy]
-    return found
+        contact = contact.where(~wanted, sampled(wanted, more))
+    found = contact["breakthrough_probability"].transpose(..., "set").values
+    return found, _is_clear(contact, RAREST)[:, None]
+
+
+def _is_clear(contact, least):
+    """Whether sets of surfaces agree, and the layer breaks in that part of the contacts or more."""
+    found = contact["breakthrough_probability"]
+    agree = found.max("set") <= APART * found.min("set")
+    breaks = (contact["breakthroughs"] >= least * contact["contacts"]).all("set")
+    return (agree & breaks).values

@@ -160,7 +160,7 @@ def test_where_most_layers_hold_more_surfaces_are_sampled(study):
         layer = layer.model_copy(update={"shear_strength": strength * layer.shear_strength})
         pair = RoughPair(study.line_spec, length, layer, study.seed)
         with np.errstate(invalid="ignore"):  # a single surface has no scatter
-            found.append(runs._of_surfaces(pair, film, 1.0))
+            found.append(runs._of_surfaces(pair, film, 1.0)[0])
             few.append(surface_contact(pair, film, 1, fewer=runs.FEWER_SURFACES[0])[PROBABILITY])
         whole.append(surface_contact(pair, film, 1)[PROBABILITY])
     np.testing.assert_array_equal(found[0][:, 0], few[0])
