@@ -194,7 +194,7 @@ class Assumptions:
 
 
 def _usual_ranges(rollers):
-    """Those of `RANGES` that the rollers' lines have: measured spectra have no other band."""
+    """Those of `RANGES` that both rollers' lines have: measured spectra have no other band."""
     known = [] if all(line.hurst_exponent for line in rollers.lines.lines) else BAND
     return {name: one for name, one in RANGES.items() if name not in known}
 

@@ -41,7 +41,7 @@ _COLUMNS = {
     "second_surface_speed": "m/s",
 }
 """Columns of a table of duty points, each with the unit that it is converted to."""
-NEAR = 1e-3
+NEAR = 0.02
 """Shares may miss the whole by this much, by rounding, without a remark."""
 _NUMBER = re.compile(r"\s*[-+]?[\d.]+\s*([ %]|$)")
 """Beginning of a number with or without unit, but not of a name such as ``2nd gear``."""
@@ -154,7 +154,9 @@ def duty(
         of_cycle = _weighted(samples, share)
         whole |= assumed.limits(of_cycle, "whole_assumed_probability")
     remarks = "\n".join(filter(None, (parts.attrs.get("remarks"), remark)))
-    found = xr.Dataset(columns | dict(parts.data_vars) | whole, attrs={"remarks": remarks})
+    found = xr.Dataset(
+        columns | dict(parts.data_vars) | whole, attrs=parts.attrs | {"remarks": remarks}
+    )
     return _with_labels(with_remarks(found, table, rollers, choices.models), labels)
 
 

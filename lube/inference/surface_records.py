@@ -22,7 +22,7 @@ from lube.physics.excursions import expected_contacts
 from lube.physics.summits import sharp_surface_summit_share
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.confidence import error_of_limits, jackknife_error
-from lube.statistics.curves import contact_curve
+from lube.statistics.curves import contact_curve, log_groups_between
 from lube.statistics.one_pair import quantile
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import Study
@@ -39,6 +39,8 @@ RATIOS = np.geomspace(0.5, 20.0, 12)
 ANCHORED = 0.9999
 """Probability at the film of a record below which the number of contacts is known well enough to
 correct the curve by it."""
+STEEPEST = 2.0
+"""Most by which a number of groups follows another: few surfaces may say more by chance."""
 ANCHORINGS = 3
 """How often a curve is corrected, as it is interpolated between its films."""
 LAYER_FILMS = [1, 3, 5]
@@ -166,11 +168,14 @@ def _anchored(curves, without, own, log_ratios, log_own):
     known = (own > 0.0) & (own < _groups(ANCHORED)) & (upper < 2.0 * lower)
     for record in np.flatnonzero(known):
         slope, rest = _together(without[..., record], log_ratios, log_own[record])
-        mean, *_, sizes, factor = *curves[..., record], 1.0
+        factor = 1.0
         for _ in range(ANCHORINGS):
-            curve = contact_curve(log_ratios, _with_groups(mean, factor), sizes)
-            read = scipy.special.expit(curve.logit_at(log_own[record]))
-            factor = factor * (own[record] / _groups(read)) ** slope
+            groups = _groups(_with_groups(curves[0, :, record], factor))
+            some = (groups > 0.0) & np.isfinite(groups)
+            if np.count_nonzero(some) < 2:
+                break
+            read = log_groups_between(log_ratios[some], np.log(groups[some]), log_own[record])
+            factor = factor * (own[record] / np.exp(read)) ** slope
         found[..., record] = _with_groups(found[..., record], factor)
         of_own = 0.5 * slope * np.log(upper[record] / lower[record])
         times = np.exp(np.hypot(of_own, quantile(len(without) - 1) * rest))
@@ -191,7 +196,7 @@ def _together(without, log_ratios, log_own):
         there = np.array([[np.interp(log_own, log_ratios, one)] for one in logs])
         away = there - there.mean()
         slope = np.sum(away * logs, axis=0) / np.sum(away**2)
-        slope = np.where(np.isfinite(slope), slope, 1.0)
+        slope = np.clip(np.where(np.isfinite(slope), slope, 1.0), 0.0, STEEPEST)
         # The slope takes a degree of freedom.
         wider = np.sqrt((len(logs) - 1) / (len(logs) - 2))
         return slope, wider * jackknife_error(logs - slope * there)
@@ -327,7 +332,7 @@ def _layer_strengths(pair, films, level):
     levels, moments = np.full(sharp.size, level.item()), surface_moments(pair.spec)
     shares = sharp_surface_summit_share(levels, moments, sharp, curvature_moments(pair.spec))
     others = np.exp(np.interp(np.negative(LAYER_SHARES), -shares, np.log(factors)))
-    return pair.layer.strength * np.sort([1.0, *others])
+    return pair.layer.strength * np.unique([1.0, *others])
 
 
 def surface_curves(surfaces: xr.Dataset, comparison: xr.Dataset, has_shape: bool) -> RecordCurves:
@@ -372,8 +377,14 @@ def reading_errors(surfaces: xr.Dataset, shares: Array) -> Array:
     numpy.ndarray, shape (record,)
         Standard errors of the probability.
     """
-    # The thickest film first: its probability is the least.
-    thickest_first = surfaces.isel(curve_lambda_ratio=slice(None, None, -1))
-    limits = [thickest_first[f"curve_probability{end}"].values.T for end in LIMITS]
-    rows = zip(shares, limits[0], error_of_limits(limits), strict=True)
-    return np.array([np.interp(*row) for row in rows])
+    films = np.log(surfaces["curve_lambda_ratio"].values)
+    limits = [surfaces[f"curve_probability{end}"].values.T for end in LIMITS]
+    sizes, errors = surfaces["curve_sample_size"].values.T, error_of_limits(limits)
+    rows = zip(shares, limits[0], sizes, errors, strict=True)
+    return np.array([_error_at(films, *row) for row in rows])
+
+
+def _error_at(films, share, probabilities, sizes, errors):
+    """Error of a curve at the film that it gives for a share, or at the end of it."""
+    film = contact_curve(films, probabilities, sizes).film_at(share)
+    return np.interp(film, films, errors) if not np.isnan(film) else np.nan

@@ -171,7 +171,7 @@ def _far_outside(rows, study):
     for name, unit in (("force", "N"), ("speed", "rpm")):
         levels = getattr(study.operating_grid, name)
         least, most = min(levels), max(levels)
-        if far := [row for row in rows if not least / FAR <= row[name] <= most * FAR]:
+        if far := [row for row in rows if row[name] < least / FAR or row[name] > most * FAR]:
             names = [row["record"] for row in far]
             yield (
                 f"{_first_of(names)}: the {name} is {with_unit(far[0][name], unit)}, but the "

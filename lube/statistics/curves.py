@@ -14,7 +14,7 @@ import scipy
 from lube.statistics.one_pair import quantile, standard_error
 from lube.types import Array, Values
 
-FINER = 8
+FINER = 32
 """Levels of a curve of contacts for each film at which the probability is known."""
 LEAST = 1e-12
 """Probabilities of contact closer than this to 0 or to 1 are not read from it."""
@@ -216,9 +216,31 @@ def contact_curve(films: Array, probabilities: Array, sample_size: Array) -> Cur
     numbers = np.arange(FINER * (films.size - 1) + 1) / FINER
     finer = np.interp(numbers, np.arange(films.size), films)
     contacts = np.log(-np.log1p(-probabilities[known]))
+    shares = -np.expm1(-np.exp(log_groups_between(films, contacts, finer)))
+    peak = np.argmax(shares)  # under thinner films contacts merge, and break fewer layers
+    sizes = np.interp(finer, films, sample_size)
+    return falling_curve(finer[peak:], shares[peak:], sizes[peak:], LEAST)
+
+
+def log_groups_between(films: Array, contacts: Array, wanted: Values) -> Array:
+    """Interpolate the logarithm of the number of groups of contacts between films.
+
+    Parameters
+    ----------
+    films : numpy.ndarray
+        Logarithms of the lambda ratio, shape (n,), rising.
+    contacts : numpy.ndarray
+        Logarithms of the number, shape (n,).
+    wanted : float or numpy.ndarray
+        Logarithms of other lambda ratios.
+
+    Returns
+    -------
+    numpy.ndarray
+        Of the shape of `wanted`.
+    """
     between = scipy.interpolate.PchipInterpolator(np.exp(2.0 * films), contacts)
-    shares = -np.expm1(-np.exp(between(np.exp(2.0 * finer))))
-    return falling_curve(finer, shares, np.interp(finer, films, sample_size), LEAST)
+    return between(np.exp(2.0 * np.asarray(wanted)))
 
 
 def film_interval(

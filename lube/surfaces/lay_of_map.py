@@ -24,8 +24,12 @@ LEAST_PART = 0.05
 """Waves of which the filters leave a smaller part of the power take no part in the fit of a lay."""
 
 NOTHING = 1e-4
-"""Part of the power that the shortest waves may have without taking part in the fit of a lay: a
-surface that has none as short shows only noise there."""
+"""Part of the power that waves may have that are taken as next to none: a surface without waves as
+short shows only noise there."""
+
+BEYOND = 1.15
+"""Largest wavenumber in the fit of a lay, over that beyond which next to no power lies: where the
+waves end tells the ratio, too."""
 
 RINGS = 200
 """Rings of wavenumbers among which these are sought."""
@@ -96,11 +100,11 @@ def _ratio(lay):
 
 
 def _last_square(square, powers):
-    """Square of the wavenumber beyond which the waves have next to no power, 1 at most."""
+    """Square of the wavenumber up to which waves take part, 1 at most."""
     number = (RINGS * np.sqrt(square)).astype(np.int64)
     beyond = np.cumsum(np.bincount(number, powers)[::-1])
     last = RINGS - np.searchsorted(beyond, NOTHING * beyond[-1]) + 1
-    return min(last / RINGS, 1.0) ** 2
+    return min(BEYOND * last / RINGS, 1.0) ** 2
 
 
 @dataclass(frozen=True)

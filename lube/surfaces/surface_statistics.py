@@ -46,6 +46,8 @@ roll-off."""
 
 SPIKE = 5.0
 """A spike differs from the median of its neighbours so many times as far as 99 % of the points."""
+SPIKE_POINTS = 3
+"""Most points that a spike reaches across."""
 
 
 class Estimate(NamedTuple):
@@ -253,6 +255,8 @@ def height_distribution(heights: Array) -> dict[str, Estimate]:
 def spikes(heights: Array) -> Array:
     """Heights of spikes, points that stick out of their neighbours by more than the rms height.
 
+    Narrow grooves, which are longer than `SPIKE_POINTS`, do not count.
+
     Parameters
     ----------
     heights : numpy.ndarray
@@ -271,7 +275,12 @@ def spikes(heights: Array) -> Array:
     2
     """
     away = np.abs(heights - scipy.ndimage.median_filter(heights, size=3, mode="nearest"))
-    return away[away > max(SPIKE * np.quantile(away, 0.99), np.std(heights))]
+    out = away > max(SPIKE * np.quantile(away, 0.99), np.std(heights))
+    regions, _ = scipy.ndimage.label(out, np.ones((3,) * out.ndim))
+    for number, place in enumerate(scipy.ndimage.find_objects(regions), 1):
+        if max(part.stop - part.start for part in place) > SPIKE_POINTS:
+            out[place] &= regions[place] != number
+    return away[out]
 
 
 def _power_sums(block):

@@ -17,6 +17,7 @@ from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_records import (
     CURVE_CONTACTS,
     LAYER_FILMS,
+    STEEPEST,
     _anchored,
     _by_formula,
     reading_errors,
@@ -69,6 +70,35 @@ def test_a_curve_is_corrected_by_numbers_that_are_known_within_a_factor_of_two()
     assert upper[0] == pytest.approx(0.5 * np.log(3.0 / 2.1))  # as of the record
     further = stdtrit(3, 0.975) * np.sqrt(4.0 / 3.0) * jackknife_error(rest)
     np.testing.assert_allclose(upper, np.hypot(slope * upper[0], further), rtol=1e-9)
+
+
+RATIOS, MOSTLY_HOLD = (
+    np.geomspace(1.5, 6.0, 8),
+    np.array([0.08, 0.2, 0.6, 0.7, 0.3, 0.1, 0.01, 0.001]),
+)
+"""Films, and numbers of groups of contacts of which most hold their layer."""
+
+
+def test_a_curve_that_falls_towards_thin_films_is_corrected_by_what_it_shows():
+    """Merged contacts break fewer layers, and few surfaces scatter."""
+    curves = np.stack([*[-np.expm1(-MOSTLY_HOLD)] * 3, np.full(8, 100.0)])[..., None]
+    more = np.array([-0.2, -0.1, 0.0, 0.1, 0.2])[:, None]
+    without = (MOSTLY_HOLD * np.exp(np.array([19.0, *[1.0] * 7]) * more))[..., None]
+    own = -np.expm1(-MOSTLY_HOLD[2] * np.array([[1.2], [1.0], [1.4]]))
+    found = _anchored(curves, without, own, np.log(RATIOS), np.log(RATIOS[[2]]))[0, :, 0]
+    np.testing.assert_allclose(-np.log1p(-found[1:]), 1.2 * MOSTLY_HOLD[1:], rtol=1e-6)
+    assert -np.log1p(-found[0]) == pytest.approx(1.2**STEEPEST * MOSTLY_HOLD[0], rel=1e-6)
+
+
+def test_the_error_of_a_share_is_that_at_its_film_beyond_the_peak():
+    each = -np.expm1(-MOSTLY_HOLD[:, None] * np.array([1.0, 0.9, 1.1]))
+    each[0, 1:] = 0.0, 1.0  # next to nothing is known under the thinnest film
+    names = values_with_limits(CURVE, each.T) | {"curve_sample_size": np.full(8, 900.0)}
+    dims = "curve_lambda_ratio", "record"
+    surfaces = xr.Dataset({name: (dims, one[:, None]) for name, one in names.items()})
+    surfaces = surfaces.assign_coords(curve_lambda_ratio=RATIOS)
+    (error,) = reading_errors(surfaces, each[4, :1])
+    assert error == pytest.approx(0.25 * (each[4, 2] - each[4, 1]), rel=0.05)
 
 
 @pytest.fixture(scope="module")

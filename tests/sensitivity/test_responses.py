@@ -89,7 +89,7 @@ def test_probabilities_are_those_with_the_films_own_responses():
             model,
             {name: value[number].item() for name, value in values.items()},
             film.isel(run=[number]),
-        ).mean()
+        )[0].mean()
         for number in range(len(unit))
     ]
     known = np.array(expected) > 0.0

@@ -31,7 +31,8 @@ def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
 
 
 @pytest.mark.parametrize(
-    ("ratio", "shortest"), [(20.0, 4), (20.0, 2), (10.0, 1), (5.0, 1), (4.0, 8), (4.0, 16)]
+    ("ratio", "shortest"),
+    [(20.0, 4), (20.0, 2), (10.0, 1), (5.0, 1), (4.0, 8), (4.0, 16), (20.0, 5)],
 )
 def test_ridges_are_found_where_the_surface_has_no_short_waves(ratio, shortest):
     """Of some points across its ridges. The map may not hold ridges as long, or show only noise

@@ -13,6 +13,7 @@ from lube.surfaces.surface_statistics import (
     height_distribution,
     hurst_exponent,
     roll_off,
+    spikes,
     waves_of_surface,
 )
 from lube.surfaces.topography import Preparation, Topography, power_transfer, prepare
@@ -138,3 +139,12 @@ def test_intervals_of_moments_hold_the_truth_in_95_of_100_cases():
 
 def test_too_narrow_a_range_has_no_hurst_exponent():
     assert hurst_exponent(spectrum(Q**-2.4), Waves(2e-9, 1e-9)) is None
+
+
+def test_narrow_grooves_are_no_spikes():
+    heights = 1e-8 * np.random.default_rng(2).normal(size=(256, 256))
+    heights[40:42] -= 2e-7
+    heights[:, 100] -= 2e-7
+    assert spikes(heights).size == 0
+    heights[[10, 11, 200], [20, 20, 31]] += 3e-7
+    assert spikes(heights).size == 3
