@@ -113,9 +113,7 @@ def test_each_formula_outside_its_range_is_remarked(rollers, oil):
 
 
 def test_a_viscosity_in_a_wrong_unit_is_refused_or_seen_from_the_film(rollers):
-    with pytest.raises(
-        LubeError, match=r"kinematic_viscosity: got 68 m\^2/s, need a value above 0"
-    ):
+    with pytest.raises(LubeError, match=r"kinematic_viscosity: got 68 m\^2/s, need"):
         lube.Oil(viscosity={"40 degC": "68 m^2/s", "100 degC": "9 m^2/s"})
     thick = lube.Oil(viscosity={"40 degC": "0.068 m^2/s", "100 degC": "0.009 m^2/s"})
     assert "most are from 10 nm to 10 µm" in lube.film(rollers, thick, **POINT).attrs["remarks"]
