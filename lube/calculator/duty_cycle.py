@@ -132,8 +132,8 @@ def duty(
     True
     """
     columns, labels = _columns(points)
-    columns["share"], remark = _shares(columns)
-    share = columns["share"]
+    share, remark = _shares(columns)
+    columns["share"] = share
     gap, inlet = Gap(film_shape, roughness_deformation), Inlet(inlet_shear_heating, inlet_meniscus)
     choices = Choices.of(film_formula, gap, inlet, load_sharing, contact_model=contact_model)
     choices = replace(choices, slip=_slip(columns))

@@ -88,7 +88,6 @@ def surfaces_at_records(
     own, parts = _at_films(study, first, inputs, threads)
     own_ratios, rare = first["lambda_ratio"].values, (own[0] > 0.0) & (own[0] < ANCHORED)
     thinnest, thickest = _curve_range(study, first, parts)
-    thinnest = min([thinnest, *(_broken_end(study, films) for _, films in parts)])
     # Where most layers hold, they may break rarely under films that many contacts bridge.
     thinnest = np.min(own_ratios[rare], initial=thinnest)
     ratios, pair = np.geomspace(thinnest, thickest, CURVE_FILMS), RoughPair.of(study)
@@ -186,10 +185,10 @@ def _anchored(curves, without, own, log_ratios, log_own):
 
 
 def _together(without, log_ratios, log_own):
-    """How numbers of groups at films follow that at another, and the error of what does not.
+    """How far the number of groups at each film follows that at another, and the error of the rest.
 
-    They are logarithms, and `without` is the number without each of the surfaces. Where none
-    touches the first is 1, and the second is not known.
+    Both are of logarithms of the numbers. `without` has the numbers without each of the surfaces.
+    Where a number is 0, it is taken to follow one to one, and the error is not known.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         logs = np.log(without)
@@ -275,43 +274,35 @@ def _curve_range(study, first, parts):
 
     Under uneven films, and where the oil answers the surfaces, each record has its own contacts.
     """
+    ends = np.concatenate([_curve_ends(study, films) for _, films in parts])
+    broken = np.min(ends[:, 2], initial=np.inf)
     if study.gap.is_plain:
         moments, ratios = surface_moments(study.line_spec), np.geomspace(1.0, 20.0, 400)
         films = ratios * first["composite_rms_roughness"].item()
         width = 2.0 * first["contact_half_width"].mean().item()
         contacts = expected_contacts(films, moments, study.rollers.length, width)
-        return np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
-    ends = np.concatenate([_curve_ends(study, films) for _, films in parts])
-    return ends[:, 0].min(), ends[:, 1].max()
+        thinnest, thickest = np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
+        return min(thinnest, broken), thickest
+    return min(ends[:, 0].min(), broken), ends[:, 1].max()
 
 
 def _curve_ends(study, films):
-    """Lambda ratios between which theory expects `CURVE_CONTACTS`, shape (distinct records, 2)."""
-    spec, length, ends = study.line_spec, study.rollers.length, []
-    for changed in _at_ratios(study, films):
-        each = [strip.contacts(spec, length).number for strip in changed]
-        ends.append(_ratios_with(each, CURVE_CONTACTS))
-    return np.reshape(ends, (-1, 2))
+    """Find the ends of a curve for each distinct record, shape (records, 3), lambda ratios.
 
-
-def _broken_end(study, films):
-    """Least lambda ratio at which theory expects `BREAKTHROUGHS`, or the most there are."""
-    spec, length = study.line_spec, study.rollers.length
-    sharp, ends = mean_breaking_curvature(RoughPair.of(study), films), [np.inf]
-    for changed in _at_ratios(study, films):
-        each = [strip.expected(spec, length, sharp)[1] for strip in changed]
-        ends.append(_ratios_with(each, min(BREAKTHROUGHS, max(each))))
-    return min(ends)
-
-
-def _at_ratios(study, films):
-    """Yield the strips of distinct records under films of `RATIOS`."""
-    some, _ = study_windows(study, films).distinct()
+    Between the first two theory expects `CURVE_CONTACTS`. At the third it expects `BREAKTHROUGHS`,
+    or the most there are.
+    """
+    pair, ends, (some, _) = RoughPair.of(study), [], study_windows(study, films).distinct()
     films = films.isel(record=some)
-    strips = strip_films(RoughPair.of(study), films)
+    sharp, strips = mean_breaking_curvature(pair, films), strip_films(pair, films)
     for strip, own in zip(strips, films["lambda_ratio"].values, strict=True):
         if strip is not None:
-            yield [strip.thicker(ratio / own) for ratio in RATIOS]
+            changed = [strip.thicker(ratio / own) for ratio in RATIOS]
+            each = [one.expected(pair.spec, pair.length, sharp) for one in changed]
+            contacts, broken = np.transpose(each)
+            most = _ratios_with(broken, min(BREAKTHROUGHS, broken.max()))
+            ends.append([*_ratios_with(contacts, CURVE_CONTACTS), most])
+    return np.reshape(ends, (-1, 3))
 
 
 def _ratios_with(each, numbers):

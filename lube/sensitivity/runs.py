@@ -36,11 +36,11 @@ FEWER_SURFACES = 16, 2
 """Surfaces in each set are this many times fewer than elsewhere: first, and then where that does
 not tell how often the layer breaks."""
 APART = 2.0
-"""Ratio of the probabilities of two sets above which more surfaces are sampled."""
+"""Ratio of the probabilities of two sets above which they differ."""
 FEW_BREAK = 0.3
 """Part of the contacts that break their layer below which more surfaces are sampled."""
 RAREST = 1e-3
-"""Part below which a run of surfaces tells a surrogate nothing."""
+"""Part of the contacts that break their layer below which a run takes no part in a surrogate."""
 SIZES = {"line": (1024, 2), "answered line": (256, 2), "surface": (32, 12), "sum": (4, 24)}
 """Numbers of samples of a model, and of operating points of each.
 
@@ -192,7 +192,7 @@ def run(
     xarray.Dataset
         Variables of the films over run, and ``breakthrough_probability`` over run and seed; NaN
         where the film is not known, or the layer holds in all contacts that were sampled; of
-        surfaces also if it breaks in fewer than `RAREST`, or their sets still differ.
+        surfaces also if it breaks in less than `RAREST` of the contacts, or if the sets differ.
     """
     films, found, is_clear = _runs(deviating, model, unit, points, threads, responses)
     known = np.where((found > 0.0) & is_clear, found, np.nan)
@@ -213,7 +213,7 @@ def _runs(deviating, model, unit, points, threads=None, responses=None):
     parts = ((runs, film, same) for runs, film in films for same in _same_samples(unit[runs]))
     of_samples = [(runs[same], film.isel(run=same)) for runs, film, same in parts]
 
-    found, is_clear = np.empty((2, len(unit), SEEDS))
+    found, is_clear = np.empty((len(unit), SEEDS)), np.empty((len(unit), SEEDS), bool)
 
     def of_sample(sample):
         runs, film = sample
@@ -223,7 +223,7 @@ def _runs(deviating, model, unit, points, threads=None, responses=None):
     # Options of xarray are those of all threads: set here, none changes them for the others.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         on_threads(of_sample, of_samples, threads, "direct runs")
-    return joined(films), found, is_clear > 0.0
+    return joined(films), found, is_clear
 
 
 def run_all(deviating: Deviating, unit: Array, points: xr.Dataset) -> Array:
@@ -266,7 +266,7 @@ def _same_samples(unit):
 def _probabilities(deviating, model, values, film):
     """Probability of breakthrough at some points, by each set of random numbers.
 
-    Then whether it is clear enough for a surrogate.
+    The second value says whether it is clear enough for a surrogate.
     """
     study, spec, layer = deviating.study, deviating.lines(values), deviating.layer(values)
     film["reduced_modulus"] = film["reduced_modulus"].values.flat[0]
@@ -300,7 +300,7 @@ def _probabilities(deviating, model, values, film):
 def _of_surfaces(pair, film, weaker):
     """Probability of breakthrough of surfaces at some points, by each set that has its own.
 
-    Then whether it is clear, shape (points, 1).
+    The second value says whether it is clear, shape (points, 1).
     """
     pairs = [replace(pair, seed=pair.seed + number) for number in range(SURFACE_SEEDS)]
 
@@ -308,7 +308,7 @@ def _of_surfaces(pair, film, weaker):
         # The scatter between so few surfaces is not needed.
         with np.errstate(invalid="ignore", divide="ignore"):
             each = [surface_contact(one, film, 1, weaker, fewer, wanted) for one in pairs]
-        return xr.concat(each, "set").transpose(..., "set")
+        return xr.concat(each, "set")
 
     few, more = FEWER_SURFACES
     contact = sampled(None, few)

@@ -155,10 +155,8 @@ def anisotropy(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]
 
     Parameters
     ----------
-    power : numpy.ndarray
-        From `map_power`, shape (nx, ny // 2 + 1).
-    lengths : tuple of float
-        Measured length in both directions, m.
+    power, lengths
+        As in `wave_vectors`.
     q_max : float
         Largest wave vector, rad/m, at most pi over the wider spacing.
 

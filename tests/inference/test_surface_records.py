@@ -172,7 +172,7 @@ def test_curves_of_other_layers_are_those_of_studies_with_them(plain, found, mon
     other = study.model_copy(update={"boundary_layer": layer})
     changed = made(other, ("lubricant", "film", "areal"))
     _, direct = at_records(other, inputs | {"areal": changed["areal"]}, FORCES)
-    # Both are corrected by the record's own contact, as far as it tells of that at other films.
+    # The contact sampled at the record's own film corrects both curves at all films.
     groups = [stronger["layer_curve_probability"].values, direct[CURVE].values[LAYER_FILMS]]
     ratios = np.divide(*map(np.log1p, np.negative(groups)))
     np.testing.assert_allclose(ratios, 1.0, atol=0.1)

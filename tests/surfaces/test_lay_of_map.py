@@ -35,8 +35,10 @@ def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
     [(20.0, 4), (20.0, 2), (10.0, 1), (5.0, 1), (4.0, 8), (4.0, 16), (20.0, 5)],
 )
 def test_ridges_are_found_where_the_surface_has_no_short_waves(ratio, shortest):
-    """Of some points across its ridges. The map may not hold ridges as long, or show only noise
-    among the shortest waves."""
+    """`shortest` is the shortest wave across the ridges, in points of the map.
+
+    Some ridges are longer than the map. On some maps the shortest waves are but noise.
+    """
     number = np.arange(2048)
     along, across = (np.minimum(number, 2048 - number) / 2048.0)[:, None], number[:1025] / 2048.0
     own = unstretched(along, across, ratio, 0.0)
